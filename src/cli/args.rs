@@ -16,7 +16,7 @@ pub(crate) use evaluate::EvaluateArgs;
 pub(crate) use export::ExportArgs;
 pub(crate) use member_pick::MemberPick;
 pub(crate) use optimize::OptimizeArgs;
-pub(crate) use run_view::{PlotArgs, ReportArgs, ViewArgs};
+pub(crate) use run_view::{LookArgs, PlotArgs, ReportArgs, ViewArgs};
 pub(crate) use satellites::SatelliteArgs;
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 pub(crate) use size::SizeArgs;

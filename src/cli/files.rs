@@ -63,11 +63,22 @@ pub(crate) struct StagedFile {
     place: PathBuf,
     /// `None` if the destination is not a regular file.
     staged: Option<(NamedTempFile, Removed)>,
+    /// Directories made for it, which go with it if it is dropped before it is complete.
+    made: MadeDirectories,
 }
 
 impl StagedFile {
     /// An empty file next to `path`; fails if the destination could not be replaced.
     pub(crate) fn new(path: &Path) -> Result<Self> {
+        Self::beside(path, false)
+    }
+
+    /// The same, in directories that are made for it.
+    pub(crate) fn with_directories(path: &Path) -> Result<Self> {
+        Self::beside(path, true)
+    }
+
+    fn beside(path: &Path, are_made: bool) -> Result<Self> {
         let beside = || -> Result<Self> {
             let place = resolved(path)?;
             let found = match place.metadata() {
@@ -77,13 +88,23 @@ impl StagedFile {
             if found.as_ref().is_some_and(fs::Metadata::is_dir) {
                 bail!("it is a directory, and a file is needed");
             }
-            if let (None, Some(parent)) = (&found, place.parent().filter(|parent| !parent.is_dir()))
-            {
-                bail!("there is no directory {}", parent.display());
+            let mut made = MadeDirectories(Vec::new());
+            match place.parent() {
+                Some(parent) if found.is_none() && are_made => {
+                    make_directories(parent, &mut made.0)?;
+                }
+                Some(parent) if found.is_none() && !parent.is_dir() => {
+                    bail!("there is no directory {}", parent.display());
+                }
+                _ => {}
             }
             let is_stream = found.is_some_and(|found| !found.is_file());
             let staged = (!is_stream).then(|| staging::file(&place)).transpose()?;
-            Ok(Self { place, staged })
+            Ok(Self {
+                place,
+                staged,
+                made,
+            })
         };
         beside().with_context(|| format!("cannot write {}", path.display()))
     }
@@ -96,7 +117,7 @@ impl StagedFile {
 
     /// The same with what `write` writes, piece by piece.
     pub(crate) fn commit_written<T>(
-        self,
+        mut self,
         write: impl FnOnce(&mut File) -> io::Result<T>,
     ) -> Result<T> {
         let cannot = format!("cannot write {}", self.place.display());
@@ -114,8 +135,12 @@ impl StagedFile {
             file.persist(&self.place)
         };
         match persisted {
-            Ok(_) => Ok(written),
+            Ok(_) => {
+                self.made.0.clear();
+                Ok(written)
+            }
             Err(PersistError { error, file }) => {
+                self.made.0.clear();
                 let kept = file.into_temp_path().keep();
                 let kept = kept.map_err(io::Error::from).map(|path| kept_beside(&path));
                 let kept = kept.map_or_else(|_| String::new(), |path| said(&path));
@@ -282,6 +307,15 @@ fn make_directories(path: &Path, made: &mut Vec<PathBuf>) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Directories made for a result, deepest first, which go when they are dropped.
+struct MadeDirectories(Vec<PathBuf>);
+
+impl Drop for MadeDirectories {
+    fn drop(&mut self) {
+        unmake(&self.0);
+    }
 }
 
 fn unmake(made: &[PathBuf]) {

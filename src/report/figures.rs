@@ -1,9 +1,12 @@
 //! The figures of a run as data, and the table behind each.
 //!
-//! A [`Plate`] has a [`Chart`], which [`draw`] turns into SVG or PNG, and its CSV. The bytes depend
+//! A [`Plate`] has a [`Chart`], which [`draw`] turns into SVG, PDF or PNG, and its CSV. The bytes depend
 //! only on the plate: the typeface is part of the library and there are no timestamps.
 
-mod bars;
+mod budget;
+mod chart;
+mod choice;
+mod course;
 mod curves;
 pub mod draw;
 mod failures;
@@ -17,7 +20,12 @@ mod table;
 
 pub use super::Baseline;
 pub use super::labels::quantity_label;
-pub use bars::budget;
+pub use budget::budget;
+pub use chart::{
+    Axis, AxisScale, Better, Chart, DeviationChart, DeviationRow, Layer, MapChart, MeasureAxis,
+    PlaneChart, Projection, RowChart, Style, TimelineChart,
+};
+pub use choice::AxisChoice;
 pub use curves::{NamedProfile, cdf, convergence, series};
 pub use failures::{NamedLosses, failures};
 pub use front::{NamedFront, pareto};
@@ -31,7 +39,6 @@ pub(in crate::report) use curves::at_epoch;
 pub(in crate::report) use front::earlier;
 pub(in crate::report) use map::at_point;
 
-use crate::ground::RegionMap;
 use crate::keyword::keywords;
 use crate::scenario::Keyword;
 use thiserror::Error;
@@ -136,6 +143,20 @@ impl Measure {
         label.to_owned()
     }
 
+    /// Which end of it is good.
+    #[must_use]
+    pub fn better(self) -> Better {
+        match self {
+            Self::MeanPdop
+            | Self::P95Pdop
+            | Self::MaxPdop
+            | Self::LongestOutageS
+            | Self::OneLostMaxPdop
+            | Self::Pdop => Better::Low,
+            _ => Better::High,
+        }
+    }
+
     /// Whether it is of what is left when any one satellite is lost.
     #[must_use]
     pub fn is_of_one_lost(self) -> bool {
@@ -174,6 +195,9 @@ pub enum FigureError {
         /// The possible measures.
         choices: String,
     },
+    /// The axis asked for cannot be had.
+    #[error("{0}")]
+    Axis(String),
     /// The table cannot be written, which does not happen in memory.
     #[error("the figure's data: {0}")]
     Table(#[from] ::csv::Error),
@@ -205,123 +229,4 @@ pub struct Plate {
     pub chart: Chart,
     /// The numbers, with the unit of each column in its header.
     pub csv: String,
-}
-
-/// What is drawn.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Chart {
-    /// Points and lines in a plane.
-    Plane(PlaneChart),
-    /// Coloured points or cells over coastlines.
-    Map(MapChart),
-    /// Groups of bars on a logarithmic axis.
-    Bars(BarChart),
-    /// Rows of bars over time.
-    Timeline(TimelineChart),
-    /// Dots on rows, in units of a tolerance.
-    Deviations(DeviationChart),
-}
-
-/// Points and lines in a plane.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlaneChart {
-    /// Title.
-    pub title: String,
-    /// Label of the horizontal axis, with its unit.
-    pub x: String,
-    /// Label of the vertical axis, with its unit.
-    pub y: String,
-    /// What is drawn, from the back to the front.
-    pub layers: Vec<Layer>,
-}
-
-/// Points drawn in the same style.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Layer {
-    /// Name in the legend; empty for none.
-    pub name: String,
-    /// The points (x, y).
-    pub points: Vec<(f64, f64)>,
-    /// The style.
-    pub style: Style,
-}
-
-/// How a layer is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Style {
-    /// A line in the n-th colour.
-    Line(usize),
-    /// A dashed grey line.
-    Rule,
-    /// Dots in the n-th colour.
-    Dots(usize),
-    /// Pale dots behind the others.
-    Faint,
-    /// Large marks in the n-th colour, of the n-th form.
-    Marks(usize),
-}
-
-/// A measure over a region.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MapChart {
-    /// Title.
-    pub title: String,
-    /// Label of the colours, with the unit.
-    pub label: String,
-    /// Longitude, latitude and value of each point, degrees; `None` where there is no value.
-    pub cells: Vec<(f64, f64, Option<f64>)>,
-    /// Names of the points of a list; empty for those without one.
-    pub names: Vec<String>,
-    /// Cells and borders of the region.
-    pub map: RegionMap,
-    /// What is shown.
-    pub bounds: super::coastline::Bounds,
-}
-
-/// Rows of bars over time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TimelineChart {
-    /// Title.
-    pub title: String,
-    /// Label of the horizontal axis, with its unit.
-    pub x: String,
-    /// The first and the last time shown.
-    pub span: [f64; 2],
-    /// Name, and beginnings and ends, of each row.
-    pub rows: Vec<(String, Vec<[f64; 2]>)>,
-}
-
-/// Numbers compared with published ones.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DeviationChart {
-    /// Title.
-    pub title: String,
-    /// Label of the horizontal axis, with its unit.
-    pub x: String,
-    /// The numbers, from the top.
-    pub rows: Vec<DeviationRow>,
-}
-
-/// A number compared with a published one.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DeviationRow {
-    /// Its name.
-    pub name: String,
-    /// Its deviation in units of the tolerance.
-    pub tolerances: f64,
-    /// The n-th colour.
-    pub colour: usize,
-}
-
-/// Groups of bars.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BarChart {
-    /// Title.
-    pub title: String,
-    /// Label of the vertical axis, with its unit.
-    pub y: String,
-    /// Names of the bars of each group.
-    pub bars: Vec<String>,
-    /// Name and bar heights of each group.
-    pub groups: Vec<(String, Vec<f64>)>,
 }

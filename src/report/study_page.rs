@@ -1,6 +1,6 @@
 //! The page of studies: one HTML file with their statements and figures, without scripts.
 
-use super::figures::draw::{DrawError, svg};
+use super::figures::draw::{DrawError, Sheet, inline_svg};
 use super::figures::study_figures;
 use super::study_sections::StudySectionTable;
 use super::{StudiesResult, StudyResult};
@@ -94,7 +94,7 @@ impl StudiesResult {
 fn section(study: &StudyResult) -> Result<StudySection<'_>, DrawError> {
     let draw = |(name, chart)| {
         let mut bytes = Vec::new();
-        svg(&chart, &mut bytes)?;
+        inline_svg(&chart, Sheet::default(), &mut bytes)?;
         Ok((name, String::from_utf8_lossy(&bytes).into_owned()))
     };
     let figures = study_figures(study).into_iter().map(draw);

@@ -333,7 +333,7 @@ fn every_figure_is_drawn_with_its_table() {
         ("convergence", "evaluations"),
         ("budget", "rms_in_track_km"),
     ] {
-        for form in ["svg", "png"] {
+        for (form, magic) in [("svg", &b"<svg"[..]), ("pdf", b"%PDF"), ("png", b"\x89PNG")] {
             let out = format!("{figure}.{form}");
             let printed = stdout(&navwalker(
                 directory.path(),
@@ -341,7 +341,6 @@ fn every_figure_is_drawn_with_its_table() {
             ));
             assert_eq!(printed, format!("{out}\n{figure}.csv\n"));
             let bytes = fs::read(directory.path().join(&out)).unwrap();
-            let magic: &[u8] = if form == "svg" { b"<svg" } else { b"\x89PNG" };
             assert!(bytes.starts_with(magic), "{out}");
         }
         let table = fs::read_to_string(directory.path().join(format!("{figure}.csv"))).unwrap();
@@ -389,10 +388,35 @@ fn figures_that_are_not_there_say_why() {
             &["--figure", "map", "--pick", "99"],
             "cannot pick 99: the front has",
         ),
+        (
+            &["--figure", "map", "--width-mm", "0"],
+            "width 0 mm is outside 40 to 1200 mm",
+        ),
+        (
+            &["--figure", "map", "--width-mm", "60", "--font-size", "20"],
+            "has no room for text of 20 pt",
+        ),
+        (&["--figure", "map", "--range", "3,1"], "the lower first"),
+        (
+            &["--figure", "map", "--clip-percentile", "0"],
+            "above 0 and at most 100",
+        ),
+        (
+            &["--figure", "cdf", "--log", "--range", "0,3"],
+            "a logarithmic axis needs values above 0",
+        ),
+        (
+            &["--figure", "convergence", "--log"],
+            "are of the figures map, cdf",
+        ),
+        (
+            &["--figure", "cdf", "--projection", "equal-earth"],
+            "--projection is of the figure map",
+        ),
         (&["--figure", "map", "--out", "map.gif"], "use --as"),
         (
-            &["--figure", "map", "--out", "nowhere/map.svg"],
-            "nowhere/map.svg",
+            &["--figure", "map", "--out", "/dev/null/map.svg"],
+            "/dev/null/map.svg",
         ),
     ] {
         let stderr = refused(arguments);

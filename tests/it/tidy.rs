@@ -218,7 +218,13 @@ fn validation_cases_are_listed_with_their_checksums() {
 /// Data of others that the program and its examples carry.
 #[test]
 fn data_of_others_are_listed_with_their_checksums() {
-    let folders = ["almanacs", "coastline", "countries", "earth-rotation"];
+    let folders = [
+        "almanacs",
+        "coastline",
+        "countries",
+        "earth-rotation",
+        "typeface",
+    ];
     check_manifest("data", &folders);
 }
 

@@ -2,7 +2,7 @@
 
 use super::{ConstellationArgs, StudyArgs};
 use crate::report::figures::draw::Form;
-use crate::report::figures::{Figure, Measure};
+use crate::report::figures::{Figure, Measure, Projection};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -72,6 +72,45 @@ pub(crate) struct ReportArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
+/// How a figure looks in print.
+#[derive(Debug, Args)]
+pub(crate) struct LookArgs {
+    /// Width of the figure, mm: 85 for one column of a journal [default: 180].
+    #[arg(long, value_name = "MM")]
+    pub(crate) width_mm: Option<f64>,
+
+    /// Size of the text, points [default: 8].
+    #[arg(long, value_name = "PT")]
+    pub(crate) font_size: Option<f64>,
+
+    /// Title in place of the usual one; none for no title.
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) title: Option<String>,
+
+    /// Logarithmic axis of the measure, or logarithmic colours of a map.
+    #[arg(long)]
+    pub(crate) log: bool,
+
+    /// Ends of the axis of the measure, or of the colours of a map; values beyond have the colour of the end.
+    #[arg(
+        long,
+        value_name = "LOW,HIGH",
+        value_delimiter = ',',
+        num_args = 2,
+        allow_negative_numbers = true
+    )]
+    pub(crate) range: Option<Vec<f64>>,
+
+    /// End the axis of the measure, or the colours of a map, at this percentile of its values.
+    #[arg(long, value_name = "P")]
+    pub(crate) clip_percentile: Option<f64>,
+
+    /// How a map shows the Earth: plate-carree or equal-earth, which has areas in proportion [default: equal-earth for the
+    /// globe, else plate-carree].
+    #[arg(long)]
+    pub(crate) projection: Option<Projection>,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct PlotArgs {
     #[command(flatten)]
@@ -103,11 +142,15 @@ pub(crate) struct PlotArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub(crate) draws: Option<u32>,
 
-    /// File format: svg, png, or csv for the data alone [default: by the extension of --out, or svg].
+    /// File format: svg, pdf (vector, with the typeface embedded), png (300 dots per inch), or csv for the data alone
+    /// [default: by the extension of --out, or svg].
     #[arg(long = "as", value_name = "FORM")]
     pub(crate) form: Option<Form>,
 
-    /// Figure to write; its data goes next to it.
+    #[command(flatten)]
+    pub(crate) look: LookArgs,
+
+    /// Figure to write, in directories that are made for it; its data goes next to it.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
 

@@ -1,5 +1,7 @@
 //! `navwalker plot`.
 
+mod look;
+
 use super::evaluate::deployment::DeploymentTable;
 use super::evaluate::failures::{self, FailureSets};
 use crate::cli::args::{MemberPick, PlotArgs};
@@ -11,33 +13,35 @@ use crate::exchange::constellation::Constellation;
 use crate::ground::RegionMap;
 use crate::optimize::Pick;
 use crate::report::Compared;
-use crate::report::figures::draw::{Form, png, svg};
+use crate::report::figures::draw::{Form, Sheet, pdf, png, svg};
 use crate::report::figures::{
     self, Figure, Measure, NamedLosses, NamedPhases, NamedProfile, Plate,
 };
 use crate::report::profile::Profile;
 use crate::scenario::Keyword;
 use anyhow::{Context, Result, bail};
-use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
     let form = form(args)?;
     refuse_figure_of_search(args)?;
+    let sheet = look::sheet(&args.look)?;
+    let choice = look::axis(&args.look)?;
     let view = View::new(&args.view)?;
     let table = table_of(args, &view, form)?;
-    make_own_place(args)?;
     let staged = args
         .out
         .as_deref()
-        .map(files::StagedFile::new)
+        .map(files::StagedFile::with_directories)
         .transpose()?;
-    let plate = plate(args, &view)?;
-    let bytes = render(&plate, form)?;
+    let mut plate = plate(args, &view)?;
+    choice.apply(&mut plate.chart)?;
+    look::style(&args.look, &mut plate.chart)?;
+    let bytes = render(&plate, form, sheet)?;
     let (Some(out), Some(staged)) = (&args.out, staged) else {
-        if form == Form::Png && io::stdout().is_terminal() {
-            bail!("a PNG cannot be written to a terminal; give a file with --out");
+        if matches!(form, Form::Png | Form::Pdf) && io::stdout().is_terminal() {
+            bail!("a {form} cannot be written to a terminal; give a file with --out");
         }
         io::stdout().lock().write_all(&bytes)?;
         return Ok(Status::Done);
@@ -104,19 +108,6 @@ fn require_same(table: &Path, data: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Makes the directory for figures in the run, if the figure goes there.
-fn make_own_place(args: &PlotArgs) -> Result<()> {
-    let Some(run) = args.view.run() else {
-        return Ok(());
-    };
-    let figures = run.join("figures");
-    if args.out.as_deref().and_then(Path::parent) == Some(&figures) {
-        fs::create_dir_all(&figures)
-            .with_context(|| format!("cannot create {}", figures.display()))?;
-    }
-    Ok(())
-}
-
 /// The form asked for, or that of the file's extension.
 fn form(args: &PlotArgs) -> Result<Form> {
     if let Some(form) = args.form {
@@ -130,11 +121,12 @@ fn form(args: &PlotArgs) -> Result<Form> {
     }
 }
 
-fn render(plate: &Plate, form: Form) -> Result<Vec<u8>> {
+fn render(plate: &Plate, form: Form, sheet: Sheet) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     match form {
-        Form::Svg => svg(&plate.chart, &mut bytes)?,
-        Form::Png => png(&plate.chart, &mut bytes)?,
+        Form::Svg => svg(&plate.chart, sheet, &mut bytes)?,
+        Form::Pdf => pdf(&plate.chart, sheet, &mut bytes)?,
+        Form::Png => png(&plate.chart, sheet, &mut bytes)?,
         Form::Csv => bytes.extend_from_slice(plate.csv.as_bytes()),
     }
     Ok(bytes)

@@ -36,7 +36,7 @@ pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<Path
 fn write(args: &ViewArgs, out: &Path, failing: Option<(u8, Option<u32>)>) -> Result<()> {
     let view = View::new(args)?;
     files::refuse_inputs(out, view.inputs.iter().map(PathBuf::as_path))?;
-    let staged = files::StagedFile::new(out)?;
+    let staged = files::StagedFile::with_directories(out)?;
     let mut html = Vec::new();
     let failures = failing.map(|failing| failure_section(&view, failing));
     let failures = failures.transpose()?;

@@ -4,7 +4,7 @@ use crate::cli::args::{ReproduceArgs, StudyFormat};
 use crate::cli::{Status, files, limits, output};
 use crate::keyword::nearest;
 use crate::printable::printable;
-use crate::report::figures::draw::{png, svg};
+use crate::report::figures::draw::{Sheet, pdf, png, svg};
 use crate::report::figures::{deviations_name, study_figures};
 use crate::report::{
     Align, StudiesResult, StudyResult, StudyStamp, Table, statements_csv, studies_markdown,
@@ -27,7 +27,7 @@ const OTHERS: [&str; 5] = [SCENARIO, REPORT, "report.md", "report.html", STATEME
 /// All statements.
 const STATEMENTS: &str = "statements.csv";
 /// The forms of a figure.
-const FORMS: [&str; 2] = ["svg", "png"];
+const FORMS: [&str; 3] = ["svg", "pdf", "png"];
 /// The study that is run if none is named.
 const DEFAULT: &str = "paper";
 /// Below it a study, or several, have their directory unless another is given.
@@ -133,11 +133,14 @@ fn reports(result: &StudiesResult) -> Result<[(String, Vec<u8>); 3]> {
 fn drawn(result: &StudiesResult) -> Result<Vec<(String, Vec<u8>)>> {
     let mut files = Vec::new();
     for (name, chart) in result.studies.iter().flat_map(study_figures) {
-        let [mut vector, mut dots] = [Vec::new(), Vec::new()];
-        svg(&chart, &mut vector)?;
-        png(&chart, &mut dots)?;
-        files.push((format!("{name}.{}", FORMS[0]), vector));
-        files.push((format!("{name}.{}", FORMS[1]), dots));
+        let sheet = Sheet::default();
+        let [mut vector, mut page, mut dots] = [Vec::new(), Vec::new(), Vec::new()];
+        svg(&chart, sheet, &mut vector)?;
+        pdf(&chart, sheet, &mut page)?;
+        png(&chart, sheet, &mut dots)?;
+        for (form, bytes) in FORMS.iter().zip([vector, page, dots]) {
+            files.push((format!("{name}.{form}"), bytes));
+        }
     }
     Ok(files)
 }

@@ -1,7 +1,10 @@
 //! Distributions, series over time, and the convergence of the search.
 
 use super::table::{Csv, optional};
-use super::{Chart, Figure, FigureError, Layer, Measure, PlaneChart, Plate, Style, at_point};
+use super::{
+    Axis, Chart, Figure, FigureError, Layer, Measure, MeasureAxis, PlaneChart, Plate, Style,
+    at_point, course,
+};
 use crate::evaluate::{COVERAGE_COLUMNS, EpochMetrics};
 use crate::keyword::Keyword;
 use crate::optimize::Record;
@@ -64,6 +67,16 @@ fn is_over_points(measure: Measure) -> bool {
             measure,
             Measure::Availability | Measure::LongestOutageS | Measure::GainMeanPdop
         )
+}
+
+/// The axis of a measure over the points at one instant.
+fn axis_over_points(measure: Measure) -> Axis {
+    let label = label_over_points(measure);
+    match measure {
+        Measure::Availability => Axis::share(label),
+        one if one.coverage_level().is_some() => Axis::share(label),
+        _ => Axis::new(label),
+    }
 }
 
 /// The label of a measure over the points at one instant.
@@ -134,8 +147,9 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
     };
     let chart = PlaneChart {
         title: "Cumulative distribution".to_owned(),
-        x,
-        y: "fraction at or below".to_owned(),
+        x: Axis::new(x),
+        y: Axis::share("fraction at or below"),
+        measure: MeasureAxis::X,
         layers,
     };
     Ok(Plate {
@@ -146,7 +160,9 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
 
 /// The distribution as a step function, up to the last drawn level.
 fn steps(quantiles: &[Quantile]) -> Vec<(f64, f64)> {
-    quantiles.iter().map(|q| (q.value, q.level)).collect()
+    let below = [0.0].into_iter().chain(quantiles.iter().map(|q| q.level));
+    let step = |(q, below): (&Quantile, f64)| [(q.value, below), (q.value, q.level)];
+    quantiles.iter().zip(below).flat_map(step).collect()
 }
 
 /// Vertical lines at the value at risk and at the CVaR.
@@ -196,8 +212,8 @@ pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, F
         "gain_mean_pdop",
     ];
     let mut csv = Csv::new(&[&before[..], &COVERAGE_COLUMNS, &["name"]].concat())?;
-    let mut layers = Vec::new();
-    for (n, named) in designs.iter().enumerate() {
+    let mut courses = Vec::new();
+    for named in designs {
         for epoch in &named.profile.epochs {
             let numbers = [
                 Some(epoch.elapsed_s),
@@ -213,24 +229,20 @@ pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, F
             let (notation, name) = (named.notation.clone(), named.name.clone());
             csv.row([notation].into_iter().chain(cells).chain([name]))?;
         }
-        let at = |e: &EpochMetrics| Some((e.elapsed_s / SECONDS_PER_HOUR, at_epoch(measure, e)?));
-        layers.push(Layer {
-            name: named.name.clone(),
-            points: named.profile.epochs.iter().filter_map(at).collect(),
-            style: Style::Line(n),
-        });
+        let at = |e: &EpochMetrics| (e.elapsed_s / SECONDS_PER_HOUR, at_epoch(measure, e));
+        let samples: Vec<(f64, Option<f64>)> = named.profile.epochs.iter().map(at).collect();
+        courses.push((named.name.clone(), samples));
     }
-    // The first design is drawn last, so it is on top.
-    layers.reverse();
-    layers.retain(|layer| !layer.points.is_empty());
+    let (layers, note) = course::layers(&courses);
     if layers.is_empty() {
         let reason = "all samples are unsolved";
         return Err(FigureError::Nothing { figure, reason });
     }
     let chart = PlaneChart {
         title: "Over time".to_owned(),
-        x: "time since the epoch (h)".to_owned(),
-        y: label_over_points(measure),
+        x: Axis::new(format!("time since the epoch (h){note}")),
+        y: axis_over_points(measure),
+        measure: MeasureAxis::Y,
         layers,
     };
     Ok(Plate {
@@ -286,8 +298,9 @@ pub fn convergence(run: &Run) -> Result<Plate, FigureError> {
     };
     let chart = PlaneChart {
         title: "Convergence of the search".to_owned(),
-        x: "designs evaluated".to_owned(),
-        y,
+        x: Axis::new("designs evaluated"),
+        y: Axis::new(y),
+        measure: MeasureAxis::Neither,
         layers: vec![Layer {
             name: String::new(),
             points: points.collect(),

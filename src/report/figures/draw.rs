@@ -1,20 +1,35 @@
-//! Charts as SVG with plotters, and as PNG with resvg from the SVG.
+//! Charts as SVG with plotters, and as PDF and PNG from the SVG.
 //!
-//! No system font is read: text is set in Ubuntu Light, which comes with the library. PNG has its
-//! shapes; SVG names a generic `sans-serif` and uses its widths.
+//! No system font is read: text is set in Arimo, which comes with the library and has the widths of Arial and Helvetica.
+//! SVG embeds it, PDF and PNG have its shapes.
 
 mod deviations;
+mod frame;
+mod heading;
 mod map;
+mod marks;
+mod palette;
+mod pdf;
 mod plane;
+mod projection;
+mod rows;
+mod ruler;
+mod sheet;
 mod timeline;
+mod typeset;
 
-use super::{BarChart, Chart, DeviationChart, PlaneChart, TimelineChart};
+pub use sheet::{Sheet, SheetError};
+
+use super::Chart;
 use crate::keyword::keywords;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
-use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg;
+use sheet::POINT;
 use std::io::{self, Write};
 use std::sync::{Arc, Once};
 use thiserror::Error;
@@ -24,6 +39,8 @@ keywords! {
     Form {
         /// Scalable Vector Graphics.
         Svg = "svg",
+        /// Portable Document Format: vectors, with the typeface embedded.
+        Pdf = "pdf",
         /// Portable Network Graphics, 300 dots per inch.
         Png = "png",
         /// The table behind the figure.
@@ -37,6 +54,9 @@ pub enum DrawError {
     /// Drawing.
     #[error("cannot draw the figure")]
     Drawing(#[from] DrawingAreaErrorKind<io::Error>),
+    /// The sheet is too small for the text.
+    #[error(transparent)]
+    Sheet(#[from] SheetError),
     /// Rasterisation.
     #[error("cannot rasterize the figure")]
     Dots(#[from] usvg::Error),
@@ -51,97 +71,82 @@ pub enum DrawError {
     Write(#[from] io::Error),
 }
 
-/// Pixels of a PNG for each unit of a figure: 7.2 inches wide at 300 dots per inch.
-const PNG_SCALE: u32 = 3;
+/// Arimo Regular, cut down to the characters of European languages and of formulas.
+const TYPEFACE: &[u8] = include_bytes!("../../../data/typeface/arimo.ttf");
 
-/// Plotters draws at integer coordinates; this many per unit keep curves smooth.
-const FINE: u32 = 4;
+/// The same, as browsers read it.
+const TYPEFACE_WOFF2: &[u8] = include_bytes!("../../../data/typeface/arimo.woff2");
 
-/// Pixels per metre of a PNG: 300 per inch.
+/// Name of the typeface, and those of equal widths where it is not embedded.
+const FAMILIES: &str = "Arimo, Arial, Helvetica, sans-serif";
+
+/// Pixels of a PNG per inch.
+const PNG_DOTS_PER_INCH: f64 = 300.0;
+
+/// The same per metre.
 const PNG_DOTS_PER_METRE: u32 = 11_811;
 
-/// Width of a figure.
-const WIDTH: u32 = 720;
+/// Pixels per inch of an SVG's size.
+const SVG_DOTS_PER_INCH: f64 = 96.0;
 
-/// Height of a figure other than a map.
-const HEIGHT: u32 = 480;
-
-/// Colours that colour-blind readers can distinguish: Okabe and Ito, *Color Universal Design* (2008).
-const COLOURS: [RGBColor; 6] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-];
-
-const INK: RGBColor = RGBColor(40, 40, 40);
-const GRID: RGBColor = RGBColor(225, 225, 225);
+const INK: RGBColor = RGBColor(30, 30, 30);
+const GRID: RGBColor = RGBColor(222, 222, 222);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
-
-/// A length in drawing coordinates.
-const fn fine(units: u32) -> u32 {
-    units * FINE
-}
-
-/// A signed length in drawing coordinates.
-const fn signed(units: i32) -> i32 {
-    units * FINE as i32
-}
-
-/// A line style of a given width.
-fn line(colour: RGBColor, units: u32) -> ShapeStyle {
-    colour.stroke_width(fine(units))
-}
-
-/// A text style of a given size.
-fn font(size: u32) -> TextStyle<'static> {
-    ("sans-serif", fine(size)).into_font().color(&INK)
-}
 
 /// The typeface used to measure texts.
 fn register_typeface() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        let bytes = epaint_default_fonts::UBUNTU_LIGHT;
         // It fails only for bytes that are not a font; a test sets text in this one.
-        let _ = register_font("sans-serif", FontStyle::Normal, bytes);
+        let _ = register_font("sans-serif", FontStyle::Normal, TYPEFACE);
     });
 }
 
-/// Writes a chart as SVG.
+/// Writes a chart as SVG, with its typeface.
 ///
 /// # Errors
 /// If it cannot be drawn or written.
-pub fn svg(chart: &Chart, mut to: impl Write) -> Result<(), DrawError> {
-    Ok(to.write_all(text(chart)?.as_bytes())?)
+pub fn svg(chart: &Chart, sheet: Sheet, mut to: impl Write) -> Result<(), DrawError> {
+    let face = format!(
+        "\n<style>@font-face{{font-family:Arimo;src:url(data:font/woff2;base64,{})}}</style>",
+        STANDARD.encode(TYPEFACE_WOFF2)
+    );
+    let text = text(chart, sheet)?;
+    let (open, rest) = text.split_at(text.find('>').map_or(0, |at| at + 1));
+    Ok(write!(to, "{open}{face}{rest}")?)
+}
+
+/// Writes a chart as SVG for a page, which has the typeface or one of equal widths.
+///
+/// # Errors
+/// If it cannot be drawn or written.
+pub fn inline_svg(chart: &Chart, sheet: Sheet, mut to: impl Write) -> Result<(), DrawError> {
+    Ok(to.write_all(text(chart, sheet)?.as_bytes())?)
+}
+
+/// Writes a chart as PDF of one page.
+///
+/// # Errors
+/// If it cannot be drawn or written.
+pub fn pdf(chart: &Chart, sheet: Sheet, mut to: impl Write) -> Result<(), DrawError> {
+    Ok(to.write_all(&pdf::page(&tree(chart, sheet)?, TYPEFACE)?)?)
 }
 
 /// Writes a chart as PNG.
 ///
 /// # Errors
 /// If it cannot be drawn or written.
-pub fn png(chart: &Chart, to: impl Write) -> Result<(), DrawError> {
-    let mut fonts = usvg::fontdb::Database::new();
-    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
-    fonts.set_sans_serif_family("Ubuntu");
-    let options = usvg::Options {
-        fontdb: Arc::new(fonts),
-        ..usvg::Options::default()
-    };
-    let tree = usvg::Tree::from_str(&text(chart)?, &options)?;
-    let (width, height) = size(chart);
-    let (width, height) = (width * PNG_SCALE, height * PNG_SCALE);
+pub fn png(chart: &Chart, sheet: Sheet, to: impl Write) -> Result<(), DrawError> {
+    let tree = tree(chart, sheet)?;
+    let scale = PNG_DOTS_PER_INCH / SVG_DOTS_PER_INCH;
+    let dots = |length: f32| (f64::from(length) * scale).round().max(1.0) as u32;
+    let (width, height) = (dots(tree.size().width()), dots(tree.size().height()));
     let mut picture = Pixmap::new(width, height).ok_or(DrawError::Size(width, height))?;
-    let scale = PNG_SCALE as f32;
-    resvg::render(
-        &tree,
-        Transform::from_scale(scale, scale),
-        &mut picture.as_mut(),
-    );
+    picture.fill(Color::WHITE);
+    let scaled = Transform::from_scale(scale as f32, scale as f32);
+    resvg::render(&tree, scaled, &mut picture.as_mut());
     let mut encoder = png::Encoder::new(to, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_pixel_dims(Some(png::PixelDimensions {
@@ -160,143 +165,52 @@ pub fn png(chart: &Chart, to: impl Write) -> Result<(), DrawError> {
     Ok(writer.finish()?)
 }
 
-/// Width and height of a figure.
-fn size(chart: &Chart) -> (u32, u32) {
+/// The figure with every text set.
+fn tree(chart: &Chart, sheet: Sheet) -> Result<usvg::Tree, DrawError> {
+    let mut fonts = usvg::fontdb::Database::new();
+    fonts.load_font_data(TYPEFACE.to_vec());
+    let options = usvg::Options {
+        fontdb: Arc::new(fonts),
+        ..usvg::Options::default()
+    };
+    Ok(usvg::Tree::from_str(&text(chart, sheet)?, &options)?)
+}
+
+/// Height of a figure in units of the drawing.
+fn height(chart: &Chart, sheet: Sheet) -> u32 {
     match chart {
-        Chart::Map(chart) => (WIDTH, map::height(chart, WIDTH)),
-        Chart::Timeline(chart) => (WIDTH, timeline::height(chart)),
-        Chart::Deviations(chart) => (WIDTH, deviations::height(chart)),
-        Chart::Plane(_) | Chart::Bars(_) => (WIDTH, HEIGHT),
+        Chart::Map(chart) => map::height(chart, sheet),
+        Chart::Timeline(chart) => timeline::height(chart, sheet),
+        Chart::Deviations(chart) => deviations::height(chart, sheet),
+        Chart::Rows(chart) => rows::height(chart, sheet),
+        Chart::Plane(chart) => plane::height(chart, sheet),
     }
 }
 
-fn text(chart: &Chart) -> Result<String, DrawError> {
+fn text(chart: &Chart, sheet: Sheet) -> Result<String, DrawError> {
     register_typeface();
     let mut text = String::new();
-    let (width, height) = size(chart);
+    let (width, height) = (sheet.width(), height(chart, sheet));
     {
-        let drawn = (fine(width), fine(height));
-        let root = SVGBackend::with_string(&mut text, drawn).into_drawing_area();
+        let root = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
         root.fill(&WHITE)?;
         match chart {
-            Chart::Plane(chart) => plane::draw(&root, chart)?,
-            Chart::Map(chart) => map::draw(&root, chart)?,
-            Chart::Bars(chart) => bars(&root, chart)?,
-            Chart::Timeline(chart) => timeline::draw(&root, chart)?,
-            Chart::Deviations(chart) => deviations::draw(&root, chart)?,
+            Chart::Plane(chart) => plane::draw(&root, chart, sheet)?,
+            Chart::Map(chart) => map::draw(&root, chart, sheet)?,
+            Chart::Rows(chart) => rows::draw(&root, chart, sheet)?,
+            Chart::Timeline(chart) => timeline::draw(&root, chart, sheet)?,
+            Chart::Deviations(chart) => deviations::draw(&root, chart, sheet)?,
         }
         root.present()?;
     }
-    let size = |scale: u32| {
-        format!(
-            "<svg width=\"{}\" height=\"{}\"",
-            width * scale,
-            height * scale
-        )
-    };
-    Ok(text.replacen(&size(FINE), &size(1), 1))
-}
-
-/// Decimals needed to distinguish the ticks of an axis.
-fn decimals(range: &std::ops::Range<f64>) -> usize {
-    let magnitude = (range.end - range.start).abs().log10().floor();
-    (1.0 - magnitude).clamp(0.0, 9.0) as usize
-}
-
-/// The range of values with a margin on both sides; [0, 1] without values.
-fn padded(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
-    let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
-        (lo.min(x), hi.max(x))
-    });
-    if lo > hi {
-        return 0.0..1.0;
-    }
-    let margin = if hi > lo {
-        0.05 * (hi - lo)
-    } else {
-        0.05 * hi.abs().max(1.0)
-    };
-    lo - margin..hi + margin
-}
-
-/// Fraction of the width of a group that its bars take.
-const GROUP_SHARE: f64 = 0.8;
-
-fn bars(root: &Area<'_>, chart: &BarChart) -> Drawn {
-    let sizes = chart
-        .groups
-        .iter()
-        .flat_map(|(_, sizes)| sizes)
-        .map(|x| x.abs());
-    let sizes = sizes.filter(|&x| x > 0.0);
-    let (least, most) = sizes.fold((f64::INFINITY, 0.0_f64), |(a, b), x| (a.min(x), b.max(x)));
-    let (least, most) = if least > most {
-        (0.1, 1.0)
-    } else {
-        (least, most)
-    };
-    // Powers of ten around the heights, so that the smallest bar is visible.
-    let floor = 10_f64.powf((least / 1.5).log10().floor());
-    // Room for the legend above the bars.
-    let top = most * 12.0;
-    let groups = chart.groups.len() as f64;
-    let mut context = ChartBuilder::on(root)
-        .caption(&chart.title, font(17))
-        .margin(fine(12))
-        .x_label_area_size(fine(26))
-        .y_label_area_size(fine(64))
-        .build_cartesian_2d(0.0..groups, (floor..top).log_scale())?;
-    context
-        .configure_mesh()
-        .disable_x_mesh()
-        .x_labels(0)
-        .y_desc(&chart.y)
-        .y_label_formatter(&|y: &f64| y.to_string())
-        .set_all_tick_mark_size(fine(4))
-        .axis_style(line(INK, 1))
-        .bold_line_style(line(GRID, 1))
-        .light_line_style(TRANSPARENT)
-        .label_style(font(12))
-        .axis_desc_style(font(14))
-        .draw()?;
-    let width = GROUP_SHARE / chart.bars.len().max(1) as f64;
-    for (b, name) in chart.bars.iter().enumerate() {
-        let colour = COLOURS[b % COLOURS.len()];
-        let bar = |(g, (_, sizes)): (usize, &(String, Vec<f64>))| {
-            let left = g as f64 + (1.0 - GROUP_SHARE) / 2.0 + b as f64 * width;
-            let size = sizes.get(b).map_or(floor, |x| x.abs().max(floor));
-            Rectangle::new(
-                [(left, floor), (left + width * 0.92, size)],
-                colour.filled(),
-            )
-        };
-        context
-            .draw_series(chart.groups.iter().enumerate().map(bar))?
-            .label(name)
-            .legend(move |(x, y)| {
-                Rectangle::new(
-                    [
-                        (x + signed(4), y - signed(5)),
-                        (x + signed(14), y + signed(5)),
-                    ],
-                    colour.filled(),
-                )
-            });
-    }
-    plane::legend(&mut context, SeriesLabelPosition::UpperRight)?;
-    let across = context.plotting_area().get_x_axis_pixel_range();
-    let (left, right) = (across.start, across.end);
-    let bottom = context.plotting_area().get_y_axis_pixel_range().end;
-    let centred = plotters::style::text_anchor::Pos::new(
-        plotters::style::text_anchor::HPos::Center,
-        plotters::style::text_anchor::VPos::Top,
+    let points = |length: u32| f64::from(length) / f64::from(POINT);
+    let drawn = format!("<svg width=\"{width}\" height=\"{height}\"");
+    let printed = format!(
+        "<svg width=\"{:.2}pt\" height=\"{:.2}pt\"",
+        points(width),
+        points(height)
     );
-    for (g, (name, _)) in chart.groups.iter().enumerate() {
-        let x = left + ((right - left) as f64 * (g as f64 + 0.5) / groups) as i32;
-        let style = font(12).pos(centred);
-        root.draw(&Text::new(name.clone(), (x, bottom + signed(8)), style))?;
-    }
-    Ok(())
+    Ok(typeset::typeset(&text.replacen(&drawn, &printed, 1)))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What the loss of each satellite does.
 
 use super::table::{Csv, optional};
-use super::{Chart, Figure, FigureError, Layer, PlaneChart, Plate, Style};
+use super::{Axis, Chart, Figure, FigureError, Layer, MeasureAxis, PlaneChart, Plate, Style};
 use crate::evaluate::Metrics;
 
 /// A constellation, and the metrics without each of its satellites.
@@ -91,17 +91,16 @@ pub fn failures(all: &[NamedLosses]) -> Result<Plate, FigureError> {
     let is_drawn = all.iter().any(|one| one.is_drawn);
     let chart = PlaneChart {
         title: format!("Loss of {}", crate::units::counted(k, "satellite")),
-        x: match k {
+        x: Axis::new(match k {
             1 => "CVaR of PDOP without the satellite",
             _ => "CVaR of PDOP without the satellites",
-        }
-        .to_owned(),
-        y: match (k, is_drawn) {
+        }),
+        y: Axis::share(match (k, is_drawn) {
             (1, _) => "fraction of the satellites",
             (_, true) => "fraction of the draws",
             (_, false) => "fraction of the sets",
-        }
-        .to_owned(),
+        }),
+        measure: MeasureAxis::X,
         layers,
     };
     Ok(Plate {

@@ -1,7 +1,9 @@
 //! The front in the plane of two objectives.
 
 use super::table::{Csv, optional};
-use super::{Chart, Figure, FigureError, Layer, PlaneChart, Plate, Style, quantity_label};
+use super::{
+    Axis, Chart, Figure, FigureError, Layer, MeasureAxis, PlaneChart, Plate, Style, quantity_label,
+};
 use crate::constellation::shell_letters;
 use crate::report::Baseline;
 use crate::run::{FrontMember, Run};
@@ -108,14 +110,29 @@ pub fn pareto(
         } else {
             "Pareto front".to_owned()
         },
-        x: quantity_label(x),
-        y: quantity_label(y),
+        x: Axis::new(label(run, x)),
+        y: Axis::new(label(run, y)),
+        measure: MeasureAxis::Neither,
         layers,
     };
     Ok(Plate {
         csv: table(&rows, &[names.clone(), run.constraint_names()].concat())?,
         chart: Chart::Plane(chart),
     })
+}
+
+/// The label of an objective, with the weight and the level of the tail where it has one.
+fn label(run: &Run, name: &str) -> String {
+    let label = quantity_label(name);
+    let Some(of) = run.scenario.as_ref().map(|scenario| &scenario.objectives) else {
+        return label;
+    };
+    let (weight, level) = (of.cvar_weight, of.cvar_level);
+    match Quantity::from_keyword(name) {
+        Ok(Quantity::JPos) => format!("{label}, \u{3bb} = {weight}, \u{3b1} = {level}"),
+        Ok(Quantity::CvarPdop | Quantity::N1CvarPdop) => format!("{label}, \u{3b1} = {level}"),
+        _ => label,
+    }
 }
 
 fn rows<'a>(

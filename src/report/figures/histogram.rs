@@ -1,7 +1,9 @@
 //! How often so many satellites are in view.
 
 use super::table::Csv;
-use super::{Chart, Figure, FigureError, Layer, NamedProfile, PlaneChart, Plate, Style};
+use super::{
+    Axis, Chart, Figure, FigureError, Layer, MeasureAxis, NamedProfile, PlaneChart, Plate, Style,
+};
 use crate::evaluate::HistogramRow;
 
 /// The histograms of the satellites in view over all points and instants: of LEO and of all for each constellation, and of
@@ -52,8 +54,12 @@ pub fn histogram(designs: &[NamedProfile<'_>]) -> Result<Plate, FigureError> {
     ));
     let chart = PlaneChart {
         title: "Satellites in view".to_owned(),
-        x: "satellites in view".to_owned(),
-        y: "fraction of points and instants".to_owned(),
+        x: Axis {
+            is_whole: true,
+            ..Axis::new("satellites in view")
+        },
+        y: Axis::new("fraction of points and instants"),
+        measure: MeasureAxis::Neither,
         layers,
     };
     Ok(Plate {

@@ -1,7 +1,9 @@
 //! A measure over the region.
 
 use super::table::{Csv, optional};
-use super::{Chart, Figure, FigureError, MapChart, Measure, NamedProfile, Plate, title};
+use super::{
+    Axis, Chart, Figure, FigureError, MapChart, Measure, NamedProfile, Plate, Projection, title,
+};
 use crate::evaluate::{COVERAGE_COLUMNS, PointMetrics};
 use crate::ground::RegionMap;
 use crate::keyword::Keyword;
@@ -48,7 +50,11 @@ pub fn map(
         .points
         .iter()
         .map(|p| (p.latitude_deg, p.longitude_deg));
-    let Some(bounds) = Bounds::around(places, map.margin_deg()) else {
+    let margin_deg = match map.tiling {
+        Some(_) => map.margin_deg(),
+        None => margin_of_sites(profile),
+    };
+    let Some(bounds) = Bounds::around(places, margin_deg) else {
         let reason = "the region has no point";
         return Err(FigureError::Nothing { figure, reason });
     };
@@ -61,7 +67,9 @@ pub fn map(
     let cell = |(n, p): (usize, &PointMetrics)| (p.longitude_deg, p.latitude_deg, value(n, p));
     let chart = MapChart {
         title: title(named),
-        label: measure.label(),
+        colours: Axis::new(measure.label()),
+        better: measure.better(),
+        projection: usual_projection(&bounds),
         cells: profile.points.iter().enumerate().map(cell).collect(),
         names: match map.tiling {
             Some(_) => Vec::new(),
@@ -74,6 +82,31 @@ pub fn map(
         csv: table(profile)?,
         chart: Chart::Map(chart),
     })
+}
+
+/// The globe has areas in proportion, a region degrees.
+fn usual_projection(bounds: &Bounds) -> Projection {
+    let span = |[low, high]: [f64; 2]| high - low;
+    if span(bounds.longitude_deg) >= 270.0 && span(bounds.latitude_deg) >= 100.0 {
+        Projection::EqualEarth
+    } else {
+        Projection::PlateCarree
+    }
+}
+
+/// Degrees around sites: a part of their extent, and at least what the coastline resolves.
+fn margin_of_sites(profile: &Profile) -> f64 {
+    const SHARE: f64 = 0.2;
+    const RANGE_DEG: [f64; 2] = [1.0, 10.0];
+    let extent = |of: fn(&PointMetrics) -> f64| {
+        let values = profile.points.iter().map(of);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        (high - low).max(0.0)
+    };
+    let largest = extent(|p| p.latitude_deg).max(extent(|p| p.longitude_deg));
+    (SHARE * largest).clamp(RANGE_DEG[0], RANGE_DEG[1])
 }
 
 fn table(profile: &Profile) -> Result<String, FigureError> {

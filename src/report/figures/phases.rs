@@ -1,7 +1,9 @@
 //! A build-up or a drawdown, phase by phase.
 
 use super::table::{Csv, optional};
-use super::{Chart, Figure, FigureError, Layer, Measure, PlaneChart, Plate, Style};
+use super::{
+    Axis, Chart, Figure, FigureError, Layer, Measure, MeasureAxis, PlaneChart, Plate, Style,
+};
 use crate::evaluate::Metrics;
 
 /// The phases of a constellation.
@@ -98,11 +100,15 @@ pub fn phases(all: &[NamedPhases], measure: Measure) -> Result<Plate, FigureErro
     };
     let chart = PlaneChart {
         title: "Phases of the constellation".to_owned(),
-        x,
-        y: match measure {
-            Measure::Availability => "availability (fraction of points and instants)".to_owned(),
-            other => other.label(),
+        x: Axis {
+            is_whole: true,
+            ..Axis::new(x)
         },
+        y: match measure {
+            Measure::Availability => Axis::share("availability (fraction of points and instants)"),
+            other => Axis::new(other.label()),
+        },
+        measure: MeasureAxis::Y,
         layers,
     };
     Ok(Plate {
@@ -140,7 +146,7 @@ mod tests {
             chart.layers[0].points,
             [(1.0, 2.0), (2.0, 2.0), (3.0, 1.5), (4.0, 1.5)]
         );
-        assert_eq!(chart.x, "phase, from 1 (p0) to 3 (p2)");
+        assert_eq!(chart.x.label, "phase, from 1 (p0) to 3 (p2)");
         assert!(phases(&[one], Measure::LongestOutageS).is_err());
     }
 }

@@ -1,6 +1,9 @@
 //! The figures of studies: how far each number is from the published one, and those that the study asks for.
 
-use super::{Chart, DeviationChart, DeviationRow, Layer, PlaneChart, Style};
+use super::{
+    Axis, Chart, DeviationChart, DeviationRow, Layer, MeasureAxis, PlaneChart, Style,
+    course as of_time,
+};
 use crate::evaluate::EpochMetrics;
 use crate::report::{StatementRecord, StudyResult, quantity_label};
 use crate::study::Verdict;
@@ -22,7 +25,7 @@ pub fn study_figures(study: &StudyResult) -> Vec<NamedChart> {
         let chart = match &figure.data {
             FigureData::Objectives { objectives, places } => {
                 let labels = objectives.map(|objective| quantity_label(&objective.to_string()));
-                plane(title, labels, placed(places))
+                plane(title, labels.map(Axis::new), placed(places))
             }
             FigureData::VisibleDistribution(curves) => distribution(title, curves),
             FigureData::MaxPdopCourse(curves) => course(title, curves),
@@ -79,11 +82,12 @@ fn shortened(name: &str) -> String {
     name.chars().take(MOST - 1).chain(['…']).collect()
 }
 
-fn plane(title: &str, [x, y]: [String; 2], layers: Vec<Layer>) -> Chart {
+fn plane(title: &str, [x, y]: [Axis; 2], layers: Vec<Layer>) -> Chart {
     Chart::Plane(PlaneChart {
         title: title.to_owned(),
         x,
         y,
+        measure: MeasureAxis::Neither,
         layers,
     })
 }
@@ -134,33 +138,35 @@ fn distribution(title: &str, curves: &[Curve]) -> Chart {
     let points = |curve: &Curve| -> Vec<(f64, f64)> {
         let sorted = curve.sorted_visible();
         let count = sorted.len() as f64;
+        let level = |k: usize| k as f64 / count;
         let numbered = sorted.into_iter().enumerate();
         numbered
-            .map(|(k, visible)| (visible, (k + 1) as f64 / count))
+            .flat_map(|(k, visible)| [(visible, level(k)), (visible, level(k + 1))])
             .collect()
     };
-    plane(
-        title,
-        ["E_g(N_visible)", "fraction of the instants at or below"].map(str::to_owned),
-        layers(curves, points),
-    )
-}
-
-/// The maximum PDOP over time.
-fn course(title: &str, curves: &[Curve]) -> Chart {
-    let at = |epoch: &EpochMetrics| Some((epoch.elapsed_s / SECONDS_PER_HOUR, epoch.max_pdop?));
-    plane(
-        title,
-        ["time (h)", "maximum PDOP"].map(str::to_owned),
-        layers(curves, |curve| curve.epochs.iter().filter_map(at).collect()),
-    )
-}
-
-fn layers(curves: &[Curve], points: impl Fn(&Curve) -> Vec<(f64, f64)>) -> Vec<Layer> {
     let layer = |(n, curve): (usize, &Curve)| Layer {
         name: curve.name.clone(),
         points: points(curve),
         style: Style::Line(n),
     };
-    curves.iter().enumerate().map(layer).collect()
+    let axes = [
+        Axis::new("E_g(N_visible)"),
+        Axis::share("fraction of the instants at or below"),
+    ];
+    plane(title, axes, curves.iter().enumerate().map(layer).collect())
+}
+
+/// The maximum PDOP over time.
+fn course(title: &str, curves: &[Curve]) -> Chart {
+    let at = |epoch: &EpochMetrics| (epoch.elapsed_s / SECONDS_PER_HOUR, epoch.max_pdop);
+    let named = curves.iter().map(|curve| {
+        let samples: Vec<(f64, Option<f64>)> = curve.epochs.iter().map(at).collect();
+        (curve.name.clone(), samples)
+    });
+    let (layers, note) = of_time::layers(&named.collect::<Vec<_>>());
+    let axes = [
+        Axis::new(format!("time (h){note}")),
+        Axis::new("maximum PDOP"),
+    ];
+    plane(title, axes, layers)
 }

@@ -1,6 +1,6 @@
 //! What failures of satellites do, as a section of the page.
 
-use crate::report::figures::draw::{DrawError, svg};
+use crate::report::figures::draw::{DrawError, Sheet, svg};
 use crate::report::figures::{NamedLosses, Plate, failures};
 use crate::report::shown;
 use base64::Engine;
@@ -95,7 +95,7 @@ impl FailureSection {
 /// A figure as SVG in base64.
 fn image(plate: &Plate) -> Result<String, DrawError> {
     let mut bytes = Vec::new();
-    svg(&plate.chart, &mut bytes)?;
+    svg(&plate.chart, Sheet::default(), &mut bytes)?;
     Ok(STANDARD.encode(bytes))
 }
 

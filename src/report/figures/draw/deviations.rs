@@ -1,17 +1,20 @@
 //! Dots on rows, in units of a tolerance.
 
-use super::{Area, COLOURS, DeviationChart, Drawn, GRID, INK, fine, font, line, signed};
+use super::frame::{Frame, x_labels_height};
+use super::heading::Heading;
+use super::palette::colour;
+use super::ruler::Ruler;
+use super::sheet::Sheet;
+use super::{Area, Drawn};
+use crate::report::figures::{Axis, DeviationChart};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Height of a row.
-const ROW: u32 = 18;
+/// Height of a row in heights of the text.
+const ROW: f64 = 1.5;
 
-/// Height of everything but the rows.
-const AROUND: u32 = 110;
-
-/// Width of the names of the rows.
-const NAMES: u32 = 300;
+/// Most of the width that names take.
+const NAMES: f64 = 0.5;
 
 /// Half of the axis, in tolerances.
 const REACH: f64 = 3.0;
@@ -19,57 +22,67 @@ const REACH: f64 = 3.0;
 /// Where a dot beyond the axis is drawn.
 const EDGE: f64 = 2.9;
 
-const BAND: RGBColor = RGBColor(232, 240, 246);
+const BAND: RGBColor = RGBColor(229, 238, 245);
 
-pub(super) fn height(chart: &DeviationChart) -> u32 {
-    AROUND + ROW * chart.rows.len() as u32
+fn heading(chart: &DeviationChart) -> Heading<'_> {
+    Heading {
+        title: &chart.title,
+        entries: Vec::new(),
+    }
 }
 
-pub(super) fn draw(root: &Area<'_>, chart: &DeviationChart) -> Drawn {
-    let rows = chart.rows.len() as f64;
-    let mut context = ChartBuilder::on(root)
-        .caption(&chart.title, font(17))
-        .margin(fine(12))
-        .x_label_area_size(fine(48))
-        .y_label_area_size(fine(NAMES))
-        .build_cartesian_2d(-REACH..REACH, 0.0..rows)?;
-    let band = Rectangle::new([(-1.0, 0.0), (1.0, rows)], BAND.filled());
-    context.draw_series(std::iter::once(band))?;
-    context
-        .configure_mesh()
-        .disable_y_mesh()
-        .y_labels(0)
-        .x_desc(&chart.x)
-        .x_labels(7)
-        .set_all_tick_mark_size(fine(4))
-        .axis_style(line(INK, 1))
-        .bold_line_style(line(GRID, 1))
-        .light_line_style(TRANSPARENT)
-        .label_style(font(12))
-        .axis_desc_style(font(14))
-        .draw()?;
-    // The first row is on top.
-    let middle = |n: usize| rows - 0.5 - n as f64;
-    for (n, row) in chart.rows.iter().enumerate() {
-        let style = COLOURS[row.colour % COLOURS.len()].filled();
-        let at = (row.tolerances.clamp(-EDGE, EDGE), middle(n));
+pub(super) fn height(chart: &DeviationChart, sheet: Sheet) -> u32 {
+    let rows = sheet.em(ROW * chart.rows.len().max(2) as f64);
+    (heading(chart).height(sheet) + rows + x_labels_height(sheet)) as u32
+}
+
+pub(super) fn draw(area: &Area<'_>, chart: &DeviationChart, sheet: Sheet) -> Drawn {
+    let heading = heading(chart);
+    heading.draw(area, sheet)?;
+    let (width, height) = area.dim_in_pixel();
+    let most = (NAMES * f64::from(width)) as i32;
+    let names = chart
+        .rows
+        .iter()
+        .map(|row| sheet.fitted(&row.name, 1.0, most));
+    let names: Vec<String> = names.collect();
+    let widest = names
+        .iter()
+        .map(|name| sheet.text_width(name, 1.0))
+        .max()
+        .unwrap_or(0);
+    let frame = Frame {
+        left: widest + sheet.em(1.4),
+        right: width as i32 - sheet.em(1.2),
+        top: heading.height(sheet),
+        bottom: height as i32 - x_labels_height(sheet),
+    };
+    let axis = Axis {
+        range: Some([-REACH, REACH]),
+        ..Axis::default()
+    };
+    let ruler = Ruler::new(&axis, std::iter::empty(), 6, true);
+    let within = [-1.0, 1.0].map(|x| frame.across(ruler.share(x)));
+    let band = [(within[0], frame.top), (within[1], frame.bottom)];
+    area.draw(&Rectangle::new(band, BAND.filled()))?;
+    frame.draw_grid(area, &ruler, true)?;
+    let count = chart.rows.len().max(1) as f64;
+    let side = Pos::new(HPos::Right, VPos::Center);
+    for (n, (row, name)) in chart.rows.iter().zip(names).enumerate() {
+        let y = frame.up(1.0 - (n as f64 + 0.5) / count);
+        let x = frame.across(ruler.share(row.tolerances.clamp(-EDGE, EDGE)));
+        let style = colour(row.colour).filled();
         if row.tolerances.abs() <= EDGE {
-            let dot = Circle::new(at, signed(4), style);
-            context.draw_series(std::iter::once(dot))?;
+            area.draw(&Circle::new((x, y), sheet.em(0.3), style))?;
         } else {
             // An arrow to where the dot would be.
-            let side = signed(if row.tolerances > 0.0 { 6 } else { -6 });
-            let arrow = vec![(side, 0), (-side, -side), (-side, side)];
-            let mark = EmptyElement::at(at) + Polygon::new(arrow, style);
-            context.draw_series(std::iter::once(mark))?;
+            let side = sheet.em(if row.tolerances > 0.0 { 0.4 } else { -0.4 });
+            let arrow = vec![(x + side, y), (x - side, y - side), (x - side, y + side)];
+            area.draw(&Polygon::new(arrow, style))?;
         }
+        let at = (frame.left - sheet.em(0.6), y);
+        area.draw(&Text::new(name, at, sheet.font().pos(side)))?;
     }
-    let area = context.plotting_area();
-    let left = area.get_x_axis_pixel_range().start;
-    for (n, row) in chart.rows.iter().enumerate() {
-        let (_, y) = area.map_coordinate(&(-REACH, middle(n)));
-        let style = font(12).pos(Pos::new(HPos::Right, VPos::Center));
-        root.draw(&Text::new(row.name.clone(), (left - signed(8), y), style))?;
-    }
-    Ok(())
+    frame.draw_box(area)?;
+    frame.draw_x(area, &ruler, &chart.x, sheet)
 }

@@ -1,197 +1,137 @@
 //! Points and lines in a plane.
 
-use super::{
-    Area, COLOURS, Drawn, GRID, INK, PlaneChart, decimals, fine, font, line, padded, signed,
-};
-use crate::report::figures::{Layer, Style};
-use plotters::coord::CoordTranslate;
-use plotters::coord::types::RangedCoordf64;
+use super::frame::{Frame, clipped, x_labels_height, y_label_width, y_labels_width};
+use super::heading::Heading;
+use super::marks::{self, Mark, draw_line};
+use super::palette::colour;
+use super::ruler::Ruler;
+use super::sheet::Sheet;
+use super::{Area, Drawn};
+use crate::report::figures::{Layer, PlaneChart, Style};
 use plotters::prelude::*;
 
-type Context<'a, 'b> =
-    ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+/// Height of the data by the width of the sheet: of one column of a journal, and of more.
+const NARROW: (f64, u32) = (0.62, 110);
+const WIDE: f64 = 0.42;
 
-/// Number of points above which a line is drawn thin.
-const DENSE: usize = 400;
+/// Share of its colour in a band, over white.
+const TINT: f64 = 0.3;
 
-const FAINT: RGBColor = RGBColor(200, 204, 210);
-const RULE: RGBColor = RGBColor(110, 110, 110);
+pub(super) fn height(chart: &PlaneChart, sheet: Sheet) -> u32 {
+    let width = f64::from(sheet.width());
+    let (share, widest_mm) = NARROW;
+    let is_narrow = width <= f64::from(super::sheet::mm(widest_mm));
+    let data = width * if is_narrow { share } else { WIDE };
+    // Large text leaves less room for the data.
+    let data = (data as i32).max(sheet.em(12.0));
+    (heading(chart).height(sheet) + data + x_labels_height(sheet)) as u32
+}
 
-pub(super) fn draw(root: &Area<'_>, chart: &PlaneChart) -> Drawn {
-    let points = || chart.layers.iter().flat_map(|layer| &layer.points);
-    let x = padded(points().map(|p| p.0));
-    let mut y = padded(points().map(|p| p.1));
-    let named = chart
+/// Title and legend: lines and dots by their number, then marks, then the rest.
+fn heading(chart: &PlaneChart) -> Heading<'_> {
+    let order = |style: Style| match style {
+        Style::Line(n) | Style::Dots(n) => n,
+        Style::Marks(n) => 1000 + n,
+        Style::Rule => 2000,
+        Style::Band(_) | Style::Faint => 3000,
+    };
+    let mut named: Vec<&Layer> = chart
         .layers
         .iter()
-        .filter(|layer| !layer.name.is_empty())
-        .count();
-    let (corner, is_free) = corner(points(), &x, &y);
-    if named > 0 && !is_free {
-        y.end += 0.06 * (named as f64 + 1.0) * (y.end - y.start);
+        .filter(|one| !one.name.is_empty())
+        .collect();
+    named.sort_by_key(|layer| order(layer.style));
+    let entry = |layer: &Layer| (mark(layer.style), layer.name.clone());
+    Heading {
+        title: &chart.title,
+        entries: named.into_iter().map(entry).collect(),
     }
-    let (x_decimals, y_decimals) = (decimals(&x), decimals(&y));
-    let mut context = ChartBuilder::on(root)
-        .caption(&chart.title, font(17))
-        .margin(fine(12))
-        .x_label_area_size(fine(48))
-        .y_label_area_size(fine(64))
-        .build_cartesian_2d(x, y)?;
-    context
-        .configure_mesh()
-        .x_desc(&chart.x)
-        .y_desc(&chart.y)
-        .x_labels(8)
-        .y_labels(8)
-        .x_label_formatter(&|x| format!("{x:.x_decimals$}"))
-        .y_label_formatter(&|y| format!("{y:.y_decimals$}"))
-        .set_all_tick_mark_size(fine(4))
-        .axis_style(line(INK, 1))
-        .bold_line_style(line(GRID, 1))
-        .light_line_style(TRANSPARENT)
-        .label_style(font(12))
-        .axis_desc_style(font(14))
-        .draw()?;
+}
+
+fn mark(style: Style) -> Mark {
+    match style {
+        Style::Line(n) => Mark::Line(n),
+        Style::Band(n) => Mark::Patch(tint(n)),
+        Style::Rule => Mark::Rule,
+        Style::Dots(n) => Mark::Dot(n),
+        Style::Faint => Mark::Faint,
+        Style::Marks(n) => Mark::Form(n),
+    }
+}
+
+fn tint(n: usize) -> RGBColor {
+    let RGBColor(r, g, b) = colour(n);
+    let [r, g, b] = [r, g, b].map(|x| (255.0 - TINT * (255.0 - f64::from(x))).round() as u8);
+    RGBColor(r, g, b)
+}
+
+pub(super) fn draw(area: &Area<'_>, chart: &PlaneChart, sheet: Sheet) -> Drawn {
+    let heading = heading(chart);
+    heading.draw(area, sheet)?;
+    let (width, height) = area.dim_in_pixel();
+    let points = || chart.layers.iter().flat_map(|layer| &layer.points);
+    let data_height = height as i32 - heading.height(sheet) - x_labels_height(sheet);
+    let most = |length: i32, each: f64| (length / sheet.em(each)).clamp(2, 9) as usize;
+    let y = Ruler::new(
+        &chart.y,
+        points().map(|p| p.1),
+        most(data_height, 2.2),
+        false,
+    );
+    let left = y_labels_width(&y, sheet) + y_label_width(sheet) + sheet.em(0.3);
+    let right = width as i32 - sheet.em(1.2);
+    let x = Ruler::new(
+        &chart.x,
+        points().map(|p| p.0),
+        most(right - left, 4.5),
+        false,
+    );
+    let frame = Frame {
+        left,
+        right,
+        top: heading.height(sheet),
+        bottom: height as i32 - x_labels_height(sheet),
+    };
+    frame.draw_grid(area, &x, true)?;
+    frame.draw_grid(area, &y, false)?;
     for layer in &chart.layers {
-        draw_layer(&mut context, layer)?;
+        let shares = layer.points.iter().map(|p| (x.share(p.0), y.share(p.1)));
+        draw_layer(area, (&frame, sheet), layer.style, shares)?;
     }
-    if named > 0 {
-        legend(&mut context, corner)?;
-    }
-    Ok(())
+    frame.draw_box(area)?;
+    frame.draw_x(area, &x, &chart.x.label, sheet)?;
+    frame.draw_y(area, &y, (&chart.y.label, true), sheet)
 }
 
-/// The corner with the fewest points, and whether it has none; the upper right if equal.
-fn corner<'a>(
-    points: impl Iterator<Item = &'a (f64, f64)>,
-    x: &std::ops::Range<f64>,
-    y: &std::ops::Range<f64>,
-) -> (SeriesLabelPosition, bool) {
-    let corners = [
-        (SeriesLabelPosition::UpperRight, [true, true]),
-        (SeriesLabelPosition::LowerRight, [true, false]),
-        (SeriesLabelPosition::UpperLeft, [false, true]),
-        (SeriesLabelPosition::LowerLeft, [false, false]),
-    ];
-    let mut counts = [0_usize; 4];
-    for (px, py) in points {
-        let across = (px - x.start) / (x.end - x.start);
-        let up = (py - y.start) / (y.end - y.start);
-        for (count, (_, [right, upper])) in counts.iter_mut().zip(&corners) {
-            let near = |share: f64, end: bool| if end { share > 0.6 } else { share < 0.4 };
-            *count += usize::from(near(across, *right) && near(up, *upper));
-        }
-    }
-    let least = (0..4).min_by_key(|&n| counts[n]).unwrap_or(0);
-    if counts[least] == 0 {
-        (corners[least].0.clone(), true)
-    } else {
-        (SeriesLabelPosition::UpperRight, false)
-    }
-}
-
-fn draw_layer<'a, 'b: 'a>(context: &mut Context<'a, 'b>, layer: &Layer) -> Drawn {
-    let points = layer.points.iter().copied();
-    match layer.style {
-        Style::Line(n) => {
-            // A bold line through many points would fill the plane.
-            let width = if layer.points.len() > DENSE { 1 } else { 2 };
-            let style = line(colour(n), width);
-            let drawn = context.draw_series(LineSeries::new(points, style))?;
-            if !layer.name.is_empty() {
-                drawn
-                    .label(&layer.name)
-                    .legend(move |(x, y)| PathElement::new([(x, y), (x + signed(18), y)], style));
-            }
-        }
-        Style::Rule => {
-            let style = line(RULE, 1);
-            let line = DashedLineSeries::new(points, fine(6), fine(4), style);
-            context
-                .draw_series(line)?
-                .label(&layer.name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + signed(18), y)], style));
-        }
-        Style::Faint => dots(context, layer, (FAINT, 2))?,
-        Style::Dots(n) => dots(context, layer, (colour(n), 4))?,
-        Style::Marks(n) => marks(context, layer, n)?,
-    }
-    Ok(())
-}
-
-fn dots(context: &mut Context<'_, '_>, layer: &Layer, (colour, radius): (RGBColor, i32)) -> Drawn {
-    let dot = move |at| Circle::new(at, signed(radius), colour.filled());
-    let drawn = context.draw_series(layer.points.iter().copied().map(dot))?;
-    drawn
-        .label(&layer.name)
-        .legend(move |(x, y)| Circle::new((x + signed(9), y), signed(radius), colour.filled()));
-    Ok(())
-}
-
-/// Large marks: rings for the first set, then triangles, crosses, squares and diamonds in turn, so that no two of
-/// twelve sets have both colour and form.
-fn marks<'a, 'b: 'a>(context: &mut Context<'a, 'b>, layer: &Layer, n: usize) -> Drawn {
-    let style = line(colour(n + 1), 2);
-    let (size, half) = (signed(7), signed(9));
-    let points = layer.points.iter().copied();
-    match n.checked_sub(1).map(|n| n % 4) {
-        None => {
-            let ring = points.map(|at| Circle::new(at, size, style));
-            let drawn = context.draw_series(ring)?.label(&layer.name);
-            drawn.legend(move |(x, y)| Circle::new((x + half, y), size, style));
-        }
-        Some(0) => {
-            let triangle = points.map(|at| TriangleMarker::new(at, size, style.filled()));
-            let drawn = context.draw_series(triangle)?.label(&layer.name);
-            drawn.legend(move |(x, y)| TriangleMarker::new((x + half, y), size, style.filled()));
-        }
-        Some(1) => {
-            let cross = points.map(|at| Cross::new(at, size, style));
-            let drawn = context.draw_series(cross)?.label(&layer.name);
-            drawn.legend(move |(x, y)| Cross::new((x + half, y), size, style));
-        }
-        Some(form) => {
-            let corners = if form == 2 {
-                square(size)
-            } else {
-                diamond(size)
-            };
-            let mark = points
-                .map(|at| EmptyElement::at(at) + Polygon::new(corners.to_vec(), style.filled()));
-            let drawn = context.draw_series(mark)?.label(&layer.name);
-            drawn.legend(move |(x, y)| {
-                EmptyElement::at((x + half, y)) + Polygon::new(corners.to_vec(), style.filled())
-            });
-        }
-    }
-    Ok(())
-}
-
-fn square(size: i32) -> [(i32, i32); 4] {
-    let side = size * 4 / 5;
-    [(-side, -side), (side, -side), (side, side), (-side, side)]
-}
-
-fn diamond(size: i32) -> [(i32, i32); 4] {
-    [(0, -size), (size, 0), (0, size), (-size, 0)]
-}
-
-fn colour(n: usize) -> RGBColor {
-    COLOURS[n % COLOURS.len()]
-}
-
-/// The legend in a corner.
-pub(super) fn legend<'a, 'b: 'a, C: CoordTranslate>(
-    context: &mut ChartContext<'a, SVGBackend<'b>, C>,
-    corner: SeriesLabelPosition,
+/// A layer of places given as shares of the frame; what is outside is not drawn.
+fn draw_layer(
+    area: &Area<'_>,
+    (frame, sheet): (&Frame, Sheet),
+    style: Style,
+    shares: impl Iterator<Item = (f64, f64)>,
 ) -> Drawn {
-    context
-        .configure_series_labels()
-        .position(corner)
-        .margin(fine(8))
-        .legend_area_size(fine(22))
-        .background_style(WHITE.mix(0.85))
-        .border_style(line(GRID, 1))
-        .label_font(font(12))
-        .draw()
+    let at = |(x, y): (f64, f64)| (frame.across(x), frame.up(y));
+    match style {
+        Style::Line(_) | Style::Rule => {
+            for part in clipped(shares) {
+                let through: Vec<_> = part.into_iter().map(at).collect();
+                draw_line(area, &through, mark(style))?;
+            }
+            Ok(())
+        }
+        Style::Band(n) => {
+            let inside = shares.map(|(x, y)| at((x.clamp(0.0, 1.0), y.clamp(0.0, 1.0))));
+            area.draw(&Polygon::new(
+                inside.collect::<Vec<_>>(),
+                tint(n).mix(0.8).filled(),
+            ))
+        }
+        Style::Dots(_) | Style::Faint | Style::Marks(_) => {
+            let inside = |p: &(f64, f64)| (0.0..=1.0).contains(&p.0) && (0.0..=1.0).contains(&p.1);
+            for place in shares.filter(inside) {
+                marks::draw(area, at(place), mark(style), sheet)?;
+            }
+            Ok(())
+        }
+    }
 }

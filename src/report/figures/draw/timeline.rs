@@ -1,65 +1,74 @@
 //! Rows of bars over time.
 
-use super::{Area, COLOURS, Drawn, GRID, INK, TimelineChart, fine, font, line, signed};
+use super::frame::{Frame, x_labels_height};
+use super::heading::Heading;
+use super::palette::colour;
+use super::ruler::Ruler;
+use super::sheet::Sheet;
+use super::{Area, Drawn};
+use crate::report::figures::{Axis, TimelineChart};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Height of a row.
-const ROW: u32 = 16;
+/// Height of a row in heights of the text.
+const ROW: f64 = 1.5;
 
-/// Height of everything but the rows.
-const AROUND: u32 = 110;
+/// Most of the width that names take.
+const NAMES: f64 = 0.35;
 
-/// Width of the names of the rows.
-const NAMES: u32 = 150;
-
-/// Most characters of a name.
-const NAME_CHARACTERS: usize = 24;
-
-pub(super) fn height(chart: &TimelineChart) -> u32 {
-    AROUND + ROW * chart.rows.len().max(1) as u32
+fn heading(chart: &TimelineChart) -> Heading<'_> {
+    Heading {
+        title: &chart.title,
+        entries: Vec::new(),
+    }
 }
 
-pub(super) fn draw(root: &Area<'_>, chart: &TimelineChart) -> Drawn {
-    // Without an outage there is an empty row, and of a single instant some time, so that there are axes.
-    let rows = chart.rows.len().max(1) as f64;
-    let [start, end] = chart.span;
-    let end = if end > start { end } else { start + 1.0 };
-    let mut context = ChartBuilder::on(root)
-        .caption(&chart.title, font(17))
-        .margin(fine(12))
-        .x_label_area_size(fine(48))
-        .y_label_area_size(fine(NAMES))
-        .build_cartesian_2d(start..end, 0.0..rows)?;
-    context
-        .configure_mesh()
-        .disable_y_mesh()
-        .y_labels(0)
-        .x_desc(&chart.x)
-        .x_labels(8)
-        .set_all_tick_mark_size(fine(4))
-        .axis_style(line(INK, 1))
-        .bold_line_style(line(GRID, 1))
-        .light_line_style(TRANSPARENT)
-        .label_style(font(12))
-        .axis_desc_style(font(14))
-        .draw()?;
-    // The first row is on top.
-    let base = |n: usize| rows - 1.0 - n as f64;
-    for (n, (_, bars)) in chart.rows.iter().enumerate() {
-        let bar = |&[from, to]: &[f64; 2]| {
-            let corners = [(from, base(n) + 0.15), (to, base(n) + 0.85)];
-            Rectangle::new(corners, COLOURS[1].filled())
-        };
-        context.draw_series(bars.iter().map(bar))?;
+pub(super) fn height(chart: &TimelineChart, sheet: Sheet) -> u32 {
+    let rows = sheet.em(ROW * chart.rows.len().max(2) as f64);
+    (heading(chart).height(sheet) + rows + x_labels_height(sheet)) as u32
+}
+
+pub(super) fn draw(area: &Area<'_>, chart: &TimelineChart, sheet: Sheet) -> Drawn {
+    let heading = heading(chart);
+    heading.draw(area, sheet)?;
+    let (width, height) = area.dim_in_pixel();
+    let most = (NAMES * f64::from(width)) as i32;
+    let names = chart
+        .rows
+        .iter()
+        .map(|(name, _)| sheet.fitted(name, 1.0, most));
+    let names: Vec<String> = names.collect();
+    let widest = names
+        .iter()
+        .map(|name| sheet.text_width(name, 1.0))
+        .max()
+        .unwrap_or(0);
+    let frame = Frame {
+        left: widest + sheet.em(1.4),
+        right: width as i32 - sheet.em(1.2),
+        top: heading.height(sheet),
+        bottom: height as i32 - x_labels_height(sheet),
+    };
+    let axis = Axis {
+        range: Some(chart.span),
+        ..Axis::default()
+    };
+    let ticks = ((frame.right - frame.left) / sheet.em(4.5)).clamp(2, 9) as usize;
+    let ruler = Ruler::new(&axis, std::iter::empty(), ticks, true);
+    frame.draw_grid(area, &ruler, true)?;
+    // Without an outage there is an empty row.
+    let count = chart.rows.len().max(1) as f64;
+    let side = Pos::new(HPos::Right, VPos::Center);
+    for (n, ((_, bars), name)) in chart.rows.iter().zip(names).enumerate() {
+        let at = |share: f64| frame.up(1.0 - (n as f64 + share) / count);
+        for [from, to] in bars {
+            let across = [*from, *to].map(|time| frame.across(ruler.share(time).clamp(0.0, 1.0)));
+            let corners = [(across[0], at(0.2)), (across[1], at(0.8))];
+            area.draw(&Rectangle::new(corners, colour(1).filled()))?;
+        }
+        let at = (frame.left - sheet.em(0.6), at(0.5));
+        area.draw(&Text::new(name, at, sheet.font().pos(side)))?;
     }
-    let area = context.plotting_area();
-    let left = area.get_x_axis_pixel_range().start;
-    for (n, (name, _)) in chart.rows.iter().enumerate() {
-        let (_, y) = area.map_coordinate(&(start, base(n) + 0.5));
-        let style = font(12).pos(Pos::new(HPos::Right, VPos::Center));
-        let name: String = name.chars().take(NAME_CHARACTERS).collect();
-        root.draw(&Text::new(name, (left - signed(8), y), style))?;
-    }
-    Ok(())
+    frame.draw_box(area)?;
+    frame.draw_x(area, &ruler, &chart.x, sheet)
 }

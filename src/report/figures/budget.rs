@@ -1,7 +1,7 @@
 //! The error budget of a validation.
 
 use super::table::Csv;
-use super::{BarChart, Chart, Figure, FigureError, Plate};
+use super::{Chart, Figure, FigureError, Plate, RowChart};
 use crate::run::ValidateResult;
 
 /// The root mean square differences of each case, by axis.
@@ -37,19 +37,32 @@ pub fn budget(validation: Option<&ValidateResult>) -> Result<Plate, FigureError>
             .map(|x| x.to_string());
         csv.row([line.case.clone()].into_iter().chain(numbers))?;
     }
-    let chart = BarChart {
+    let chart = RowChart {
         title: "Error budget of the propagation".to_owned(),
-        y: "RMS difference (km)".to_owned(),
-        bars: ["radial", "in-track", "cross-track"]
+        x: "root mean square difference (km)".to_owned(),
+        marks: ["radial", "in-track", "cross-track"]
             .map(str::to_owned)
             .to_vec(),
-        groups: lines
+        rows: lines
             .iter()
-            .map(|line| (line.case.clone(), line.rms_km.axes().to_vec()))
+            .map(|line| (told(&line.case), line.rms_km.axes().map(f64::abs).to_vec()))
             .collect(),
     };
     Ok(Plate {
-        chart: Chart::Bars(chart),
+        chart: Chart::Rows(chart),
         csv: csv.text()?,
     })
+}
+
+/// What a case compares, in words.
+fn told(case: &str) -> String {
+    let cause = match case {
+        "mean-j2/sgp4" => "mean J2, SGP4",
+        "mean-j2/sgp4-no-j3j4" => "mean J2, SGP4 without J3 and J4",
+        "osculating-j2/sgp4" => "J2 with short periods, SGP4",
+        "osculating-j2/sgp4-no-j3j4" => "J2 with short periods, SGP4 without J3 and J4",
+        "kepler-slot" => "mean motion in the wrong slot",
+        other => other,
+    };
+    cause.to_owned()
 }
