@@ -9,7 +9,7 @@ const SLACK: f64 = 1e-9;
 
 /// One variable's values, from its lower bound upwards.
 #[derive(Debug, Clone, PartialEq)]
-struct Axis {
+struct GridAxis {
     lo: f64,
     hi: f64,
     step: f64,
@@ -17,7 +17,7 @@ struct Axis {
     count: f64,
 }
 
-impl Axis {
+impl GridAxis {
     fn new(variable: &Variable, step: f64) -> Self {
         let (lo, hi) = variable.kind.bounds();
         let count = ((hi - lo) / step + SLACK).floor() + 1.0;
@@ -43,7 +43,7 @@ impl Axis {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepGrid {
     /// Of the whole grid.
-    axes: Vec<Axis>,
+    axes: Vec<GridAxis>,
     /// The first index and the number of values that are taken of each axis.
     taken: Vec<(f64, f64)>,
 }
@@ -53,7 +53,7 @@ impl SweepGrid {
     #[must_use]
     pub fn new(space: &Space, steps: &[f64]) -> Self {
         let pairs = space.variables().iter().zip(steps);
-        let axes: Vec<Axis> = pairs.map(|(v, &step)| Axis::new(v, step)).collect();
+        let axes: Vec<GridAxis> = pairs.map(|(v, &step)| GridAxis::new(v, step)).collect();
         let taken = axes.iter().map(|axis| (0.0, axis.count)).collect();
         Self { axes, taken }
     }

@@ -184,14 +184,14 @@ const ROWS: &[Row] = &[
         "sweep",
         "merge",
         "sweep --out out SWEPT --shard 1/1 |",
-        "--out out --merge",
+        "--merge --out out",
         Out,
     ),
     Row(
         "sweep",
         "status",
         "sweep --out out SWEPT |",
-        "--out out --status",
+        "--status --out out",
         Stdout,
     ),
     Row(

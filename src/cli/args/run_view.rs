@@ -96,7 +96,6 @@ pub(crate) struct LookArgs {
         long,
         value_name = "LOW,HIGH",
         value_delimiter = ',',
-        num_args = 2,
         allow_negative_numbers = true
     )]
     pub(crate) range: Option<Vec<f64>>,

@@ -19,7 +19,7 @@ const LAST_RISE: f64 = 1e-3;
 const FEWEST_GENERATIONS: usize = 5;
 
 /// The measure of progress in a history: the best value so far, which never falls.
-struct Course {
+struct SearchCourse {
     /// Its name.
     what: String,
     /// The verb of its progress, in the past tense.
@@ -29,7 +29,7 @@ struct Course {
     scale: f64,
 }
 
-impl Course {
+impl SearchCourse {
     /// The best value of a single objective, otherwise the hypervolume; `None` until something
     /// feasible is known.
     fn of(history: &[Record], objectives: &[Quantity]) -> Option<Self> {
@@ -92,12 +92,12 @@ pub(super) fn lost_volume(history: &[Record], objectives: &[Quantity]) -> Option
 
 /// Whether the history calls for more generations.
 pub(super) fn of_history(history: &[Record], objectives: &[Quantity]) -> Option<Diagnostic> {
-    let Course {
+    let SearchCourse {
         what,
         verb,
         values,
         scale,
-    } = Course::of(history, objectives)?;
+    } = SearchCourse::of(history, objectives)?;
     let count = values.len();
     let last = *values.last()?;
     if count < FEWEST_GENERATIONS {

@@ -33,13 +33,13 @@ pub(in crate::cli::commands) struct DesignList {
     input: BufReader<Box<dyn Read>>,
     /// Number of the last line, from 1.
     number: usize,
-    layout: Layout,
+    layout: ListLayout,
     /// The first line, if it is a design.
     first: Option<NumberedLine>,
 }
 
 /// What a line of the list holds.
-enum Layout {
+enum ListLayout {
     /// A notation.
     Notation,
     /// The cells of a table.
@@ -71,7 +71,7 @@ impl DesignList {
             label,
             input: BufReader::new(input),
             number: 0,
-            layout: Layout::Notation,
+            layout: ListLayout::Notation,
             first: None,
         };
         let first = list.next_line()?;
@@ -116,7 +116,7 @@ impl DesignList {
 
     /// Whether its designs may have names.
     pub(super) fn has_names(&self) -> bool {
-        matches!(self.layout, Layout::Table { name: Some(_), .. })
+        matches!(self.layout, ListLayout::Table { name: Some(_), .. })
     }
 
     /// The next line that is not blank and no comment.
@@ -169,7 +169,7 @@ impl DesignList {
 }
 
 /// The layout of a table with this header; `None` if the line is not a header.
-fn layout(line: &str, label: &str) -> Result<Option<Layout>> {
+fn layout(line: &str, label: &str) -> Result<Option<ListLayout>> {
     let Ok(names) = fields(line) else {
         return Ok(None);
     };
@@ -178,7 +178,7 @@ fn layout(line: &str, label: &str) -> Result<Option<Layout>> {
         names.iter().position(is_wanted)
     };
     if let Some(design) = NOTATION_COLUMNS.into_iter().find_map(column) {
-        return Ok(Some(Layout::Table {
+        return Ok(Some(ListLayout::Table {
             columns: names.len(),
             design,
             name: column("name"),
@@ -206,7 +206,7 @@ fn fields(line: &str) -> Result<Vec<String>, String> {
     }
 }
 
-impl Layout {
+impl ListLayout {
     /// The constellation of a line, by its notation or its name in the scenario.
     fn constellation(
         &self,

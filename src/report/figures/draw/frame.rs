@@ -16,14 +16,14 @@ const FINE: f64 = 0.4;
 
 /// Where data are drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Frame {
+pub(super) struct PlotFrame {
     pub(super) left: i32,
     pub(super) right: i32,
     pub(super) top: i32,
     pub(super) bottom: i32,
 }
 
-impl Frame {
+impl PlotFrame {
     /// The horizontal place of a share of the width.
     pub(super) fn across(&self, share: f64) -> i32 {
         self.left + (share * f64::from(self.right - self.left)).round() as i32

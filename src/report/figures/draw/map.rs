@@ -3,7 +3,7 @@
 mod names;
 mod scale;
 
-use super::frame::{Frame, clipped, x_labels_height, y_labels_width};
+use super::frame::{PlotFrame, clipped, x_labels_height, y_labels_width};
 use super::heading::Heading;
 use super::marks::Mark;
 use super::projection::Plane;
@@ -39,7 +39,7 @@ const SITE: f64 = 0.4;
 
 /// Where the parts of the figure are.
 struct Layout {
-    frame: Frame,
+    frame: PlotFrame,
     plane: Plane,
     colours: Ruler,
     height: i32,
@@ -65,7 +65,7 @@ fn layout(chart: &MapChart, sheet: Sheet) -> Layout {
     // Room for the points of the colour scale and the half of a number.
     let top = heading(chart).height(sheet) + sheet.em(0.8);
     Layout {
-        frame: Frame {
+        frame: PlotFrame {
             left,
             right: left + across,
             top,

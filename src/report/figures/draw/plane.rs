@@ -1,6 +1,6 @@
 //! Points and lines in a plane.
 
-use super::frame::{Frame, clipped, x_labels_height, y_label_width, y_labels_width};
+use super::frame::{PlotFrame, clipped, x_labels_height, y_label_width, y_labels_width};
 use super::heading::Heading;
 use super::marks::{self, Mark, draw_line};
 use super::palette::colour;
@@ -86,7 +86,7 @@ pub(super) fn draw(area: &Area<'_>, chart: &PlaneChart, sheet: Sheet) -> Drawn {
         most(right - left, 4.5),
         false,
     );
-    let frame = Frame {
+    let frame = PlotFrame {
         left,
         right,
         top: heading.height(sheet),
@@ -106,7 +106,7 @@ pub(super) fn draw(area: &Area<'_>, chart: &PlaneChart, sheet: Sheet) -> Drawn {
 /// A layer of places given as shares of the frame; what is outside is not drawn.
 fn draw_layer(
     area: &Area<'_>,
-    (frame, sheet): (&Frame, Sheet),
+    (frame, sheet): (&PlotFrame, Sheet),
     style: Style,
     shares: impl Iterator<Item = (f64, f64)>,
 ) -> Drawn {

@@ -1,6 +1,6 @@
 //! Rows of bars over time.
 
-use super::frame::{Frame, x_labels_height};
+use super::frame::{PlotFrame, x_labels_height};
 use super::heading::Heading;
 use super::palette::colour;
 use super::ruler::Ruler;
@@ -43,7 +43,7 @@ pub(super) fn draw(area: &Area<'_>, chart: &TimelineChart, sheet: Sheet) -> Draw
         .map(|name| sheet.text_width(name, 1.0))
         .max()
         .unwrap_or(0);
-    let frame = Frame {
+    let frame = PlotFrame {
         left: widest + sheet.em(1.4),
         right: width as i32 - sheet.em(1.2),
         top: heading.height(sheet),

@@ -1,6 +1,6 @@
 //! Names beside sites, where they hide least.
 
-use super::super::frame::Frame;
+use super::super::frame::PlotFrame;
 use super::super::sheet::Sheet;
 use super::super::{Area, Drawn};
 use super::SITE;
@@ -27,7 +27,7 @@ const SIDES: [(i32, i32); 8] = [
 
 pub(super) fn draw(
     area: &Area<'_>,
-    frame: &Frame,
+    frame: &PlotFrame,
     (places, names): (&[(i32, i32)], &[String]),
     sheet: Sheet,
 ) -> Drawn {

@@ -1,6 +1,6 @@
 //! The colours of a map, beside it and as high.
 
-use super::super::frame::Frame;
+use super::super::frame::PlotFrame;
 use super::super::palette::shade;
 use super::super::ruler::Ruler;
 use super::super::sheet::Sheet;
@@ -26,12 +26,12 @@ pub(super) fn width(sheet: Sheet) -> i32 {
 
 pub(super) fn draw(
     area: &Area<'_>,
-    (map, colours): (&Frame, &Ruler),
+    (map, colours): (&PlotFrame, &Ruler),
     chart: &MapChart,
     sheet: Sheet,
 ) -> Drawn {
     let left = map.right + sheet.em(GAP);
-    let bar = Frame {
+    let bar = PlotFrame {
         left,
         right: left + sheet.em(WIDTH),
         ..map.clone()
