@@ -76,7 +76,7 @@ pub(super) fn layers(courses: &[Course]) -> (Vec<Layer>, String) {
         h if h < 1.0 => format!("{:.0} min", 60.0 * h),
         h => format!("{} h", crate::units::round_decimal(h, 3)),
     };
-    let note = format!("; line: median, band: least to greatest, of every {length}");
+    let note = format!("; median and range of {length}");
     (bands.chain(lines).collect(), note)
 }
 

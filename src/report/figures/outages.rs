@@ -32,14 +32,13 @@ pub fn timeline(named: &NamedProfile<'_>) -> Result<Plate, FigureError> {
         rows.push((point.label(), hours.collect()));
     }
     let step_s = profile.step_s();
-    let unseen = format!("what is shorter than a step of {step_s} s is unseen");
     let title = title(named);
     let chart = TimelineChart {
         title: match rows.is_empty() {
             true => format!("No point has an outage: {title}"),
             false => format!("Outages: {title}"),
         },
-        x: format!("time since the epoch (h); {unseen}"),
+        x: format!("time since the epoch (h), in steps of {step_s} s"),
         span: [0.0, profile.epochs.len() as f64 * step_s / SECONDS_PER_HOUR],
         rows,
     };
