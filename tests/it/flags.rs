@@ -192,7 +192,7 @@ const ROWS: &[Row] = &[
         "status",
         "sweep --out out SWEPT |",
         "--status --out out",
-        Stdout,
+        Status,
     ),
     Row(
         "sweep",
@@ -204,7 +204,7 @@ const ROWS: &[Row] = &[
     Row(
         "sweep",
         "force",
-        "optimize --out out LITTLE | --out out SWEPT",
+        "sweep --out out SWEPT | --out out SWEPT --chunk 3",
         "--force",
         Status,
     ),
