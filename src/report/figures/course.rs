@@ -143,7 +143,7 @@ mod tests {
         };
         let courses = [("it".to_owned(), (0..1440).map(sample).collect::<Vec<_>>())];
         let (layers, note) = layers(&courses);
-        assert!(note.ends_with("of every 15 min"), "{note}");
+        assert_eq!(note, "; median and range of 15 min");
         // Two bands and two lines around the hour without a value.
         let styles: Vec<Style> = layers.iter().map(|layer| layer.style).collect();
         assert_eq!(
