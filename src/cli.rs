@@ -20,6 +20,7 @@ mod interrupt;
 mod limits;
 mod output;
 mod progress;
+mod provenance;
 mod read_constellation;
 mod run;
 mod run_view;
@@ -55,6 +56,8 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
 /// The same as a number.
 pub fn exit_status(args: impl IntoIterator<Item = OsString>) -> u8 {
     output::choose_colors();
+    let args: Vec<OsString> = args.into_iter().collect();
+    provenance::set_command(&args);
     let cli = match Cli::try_parse_from(args) {
         Ok(cli) => cli,
         Err(error) => return said(&error),
@@ -111,6 +114,7 @@ fn command(cli: Cli) -> anyhow::Result<Status> {
         Command::Dop(args) => commands::dop::run(&args),
         Command::Orbit(args) => commands::orbit::run(&args),
         Command::Export(args) => commands::export::run(&args),
+        Command::Diff(args) => commands::diff::run(&args),
         Command::Lint(args) => commands::lint::run(&args),
         Command::Validate(args) => commands::validate::run(&args),
         Command::Report(args) => commands::report::run(&args),

@@ -8,6 +8,7 @@ mod comparison_columns;
 mod csv;
 mod deployment;
 mod diagnostics;
+mod diff;
 #[cfg(feature = "figures")]
 mod dominance;
 mod evaluated;
@@ -35,6 +36,8 @@ mod study_sections;
 mod table;
 #[cfg(feature = "validate")]
 pub(crate) mod validation;
+#[cfg(feature = "figures")]
+mod validation_page;
 
 pub use baseline::{Baseline, compared_designs};
 pub use compared::Compared;
@@ -42,6 +45,7 @@ pub use comparison_columns::{ComparisonColumn, comparison_columns, on_demand_qua
 pub use csv::{ConstellationColumns, outages_csv, records_csv};
 pub use deployment::{DeploymentSummary, PhaseService};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
+pub use diff::{Diff, Moved, ResultFile, ResultFileError, Side, Tolerance};
 pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult,
@@ -64,3 +68,5 @@ pub use study_page::StudyPageError;
 pub use table::{Align, Table};
 #[cfg(feature = "validate")]
 pub use validation::{checks_csv, checks_junit, validation_markdown, validation_text};
+#[cfg(feature = "figures")]
+pub use validation_page::{ValidationPageError, write_validation_page};

@@ -6,6 +6,7 @@ pub mod checkpoint;
 pub(crate) mod columns;
 pub mod evaluations;
 pub mod inputs;
+mod provenance;
 mod results;
 pub mod size;
 #[cfg(feature = "sweep")]
@@ -16,6 +17,7 @@ pub mod typed_columns;
 mod validation;
 
 pub use columns::{metric_columns, metric_values};
+pub use provenance::{PROVENANCE, Provenance};
 pub use results::{
     Certificate, DesignSummary, Diagnostic, FixedSummary, FrontMember, Hypervolume, MemberFiles,
     Missed, MissedShell, OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,

@@ -5,6 +5,7 @@
 //! into [`Findings`].
 
 pub mod analytic;
+mod caught;
 mod check;
 mod decisions;
 pub mod distribution;
@@ -17,6 +18,7 @@ mod parts;
 pub mod residuals;
 pub mod sgp4;
 
+pub use caught::{CAUGHT_ERRORS, CaughtError, caught_by};
 pub use check::{Check, CheckedQuantity, Outcome, Tally};
 pub use paper::{PaperError, against_paper};
 pub use parts::{ModelPropagator, Parts};

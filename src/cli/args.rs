@@ -1,5 +1,6 @@
 //! The arguments of the program.
 
+mod diff;
 mod evaluate;
 mod export;
 mod member_pick;
@@ -12,6 +13,7 @@ mod size;
 mod sky;
 mod sweep;
 
+pub(crate) use diff::DiffArgs;
 pub(crate) use evaluate::EvaluateArgs;
 pub(crate) use export::ExportArgs;
 pub(crate) use member_pick::MemberPick;
@@ -120,6 +122,17 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Lint(LintArgs),
 
+    /// Compare two results: what moved, and by how much.
+    ///
+    /// A and B are directories that this program wrote (runs, evaluations, sweeps, reports of `validate` and
+    /// `reproduce`, exports), or two JSON, TOML or CSV files of one kind. Rows are matched by their design or name. Each
+    /// quantity that moved has a line with its largest move; `--format csv` lists every value. The exit status is 1 if
+    /// anything moved by more than the tolerance.
+    ///
+    /// Example: navwalker diff runs/paper-1 runs/paper-2 --relative 1e-9
+    #[command(verbatim_doc_comment)]
+    Diff(DiffArgs),
+
     /// Compute the dilution of precision of skies: satellites by azimuth and elevation.
     ///
     /// GDOP, PDOP, HDOP, VDOP and TDOP by least squares, with a clock for each system. A sky that cannot be
@@ -164,6 +177,8 @@ pub(crate) enum Command {
     ///
     /// The model under test is that of the scenario (`propagation.model`); it is the first of each
     /// case. Checks without a gate are for information. The exit status is 1 if a gate fails.
+    /// With --out DIR the reports are also written as text, JSON, CSV, Markdown and JUnit, and as a page with figures to
+    /// read or print, where each gate has its reason and the planted errors that fail it.
     ///
     /// Example: navwalker validate --design star:86.4:66/6/2@780 --against sgp4
     #[command(verbatim_doc_comment)]
@@ -190,10 +205,14 @@ pub(crate) enum Command {
 
     /// Draw a figure of a run, or of constellations, for a paper or a review, with the data behind it.
     ///
-    /// pareto       the plane of the first two objectives: the front, and the constellations
-    /// map          --measure mean-visible, mean-pdop, p95-pdop, max-pdop, availability
-    /// cdf          --measure mean-visible, mean-pdop, max-pdop (over time), or pdop with its tail
-    /// series       --measure mean-visible, mean-pdop, max-pdop
+    /// pareto       the plane of two objectives: the front, other fronts and constellations, the fuzzy pick
+    /// map          --measure over the region, such as max-pdop, availability or n1-max-pdop
+    /// cdf          the distribution of --measure over points, instants or both; of pdop with its tail
+    /// series       --measure over time
+    /// histogram    how often so many satellites are in view
+    /// timeline     the outages of the points that are out longest
+    /// failures     the CVaR of PDOP over the loss of one, two or three satellites
+    /// phases       --measure over the phases of a build-up or a drawdown
     /// convergence  the hypervolume over the evaluations of a run
     /// budget       the error budget of a validation of a run
     ///
@@ -201,7 +220,7 @@ pub(crate) enum Command {
     /// scenario. With --out, the data is written next to the figure with the extension .csv; without
     /// it, the figure goes to stdout. The same input always gives the same bytes.
     ///
-    /// Examples: navwalker plot runs/paper-1 --figure map --measure max-pdop --out max-pdop.svg
+    /// Examples: navwalker plot runs/paper-1 --figure map --measure max-pdop --width-mm 85 --out max-pdop.pdf
     ///           navwalker plot paper --figure cdf --design delta:55:182/13/1@925 --out cdf.svg
     #[command(verbatim_doc_comment)]
     Plot(PlotArgs),

@@ -1,5 +1,6 @@
 //! One file per command.
 
+pub(crate) mod diff;
 pub(crate) mod dop;
 pub(crate) mod evaluate;
 pub(crate) mod export;

@@ -9,7 +9,8 @@ pub use super::sweep_store::{ChunkState, SweepStore, sweep_chunk};
 
 use super::args::{Cli, Command, StudyArgs};
 use super::{
-    Status, coincidence, constellations, interrupt, limits, output, progress, read_constellation,
+    Status, coincidence, constellations, interrupt, limits, output, progress, provenance,
+    read_constellation,
 };
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Setup;
@@ -51,7 +52,8 @@ pub fn run(args: impl IntoIterator<Item = OsString>, host: CommandHost<'_>) -> C
 }
 
 fn parsed(args: impl IntoIterator<Item = OsString>, host: CommandHost<'_>) -> u8 {
-    let mut cli = match Cli::try_parse_from(args) {
+    let args: Vec<OsString> = args.into_iter().collect();
+    let mut cli = match Cli::try_parse_from(&args) {
         Ok(cli) => cli,
         Err(message) if message.use_stderr() => {
             let text = message.render().to_string();
@@ -68,7 +70,7 @@ fn parsed(args: impl IntoIterator<Item = OsString>, host: CommandHost<'_>) -> u8
     if let Some(study) = study_of(&mut cli.command) {
         study.text = host.scenario;
     }
-    match on_threads(cli, host.pool, host.progress) {
+    match on_threads(cli, &args, host.pool, host.progress) {
         Ok(status) => status as u8,
         Err(error) => {
             output::error(&error);
@@ -89,7 +91,12 @@ fn study_of(command: &mut Command) -> Option<&mut StudyArgs> {
 }
 
 /// Runs a command on the threads of its host, or on as many others as it asks for.
-fn on_threads(cli: Cli, pool: &rayon::ThreadPool, progress: &SharedProgress) -> Result<Status> {
+fn on_threads(
+    cli: Cli,
+    args: &[OsString],
+    pool: &rayon::ThreadPool,
+    progress: &SharedProgress,
+) -> Result<Status> {
     let own = match cli.threads {
         Some(threads) => {
             limits::check_threads(threads)?;
@@ -98,7 +105,10 @@ fn on_threads(cli: Cli, pool: &rayon::ThreadPool, progress: &SharedProgress) -> 
         }
         None => None,
     };
-    let command = || progress::followed(progress, || output::kept(|| super::command(cli)));
+    let command = || {
+        provenance::set_command(args);
+        progress::followed(progress, || output::kept(|| super::command(cli)))
+    };
     let (status, printed) = own.as_ref().unwrap_or(pool).install(command);
     output::say_again(printed);
     status

@@ -9,6 +9,7 @@ pub(crate) use staging::{is_staged, lock};
 
 use crate::cli::interrupt::{self, Removed};
 use crate::cli::output;
+use crate::run::{PROVENANCE, Provenance};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -188,6 +189,12 @@ pub(crate) fn write_all(directory: &Path, files: &[(String, Vec<u8>)]) -> Result
     Ok(())
 }
 
+/// Writes [`PROVENANCE`] in a directory.
+pub(crate) fn write_provenance(directory: &Path, provenance: &Provenance) -> Result<()> {
+    let json = crate::printable::json(provenance)? + "\n";
+    write_atomically(&directory.join(PROVENANCE), json.as_bytes())
+}
+
 /// A directory that replaces its place when it is complete, and is gone when it is dropped before.
 pub(crate) struct StagedDirectory {
     staging: TempDir,
@@ -233,8 +240,10 @@ impl StagedDirectory {
         self.staging.path()
     }
 
-    /// Moves the directory into place unless another process has put one there meanwhile, which is kept.
-    pub(crate) fn commit_if_vacant(mut self) -> Result<()> {
+    /// Moves the directory, with where it comes from, into place unless another process has put one there
+    /// meanwhile, which is kept.
+    pub(crate) fn commit_if_vacant(mut self, provenance: &Provenance) -> Result<()> {
+        write_provenance(self.path(), provenance)?;
         let (staging, place) = (self.staging.path(), self.place.as_path());
         let _held = interrupt::held();
         // An empty directory is replaced, any other is not.
@@ -248,14 +257,19 @@ impl StagedDirectory {
         Ok(())
     }
 
-    /// Moves the directory into place, replacing what is there.
-    pub(crate) fn commit(self) -> Result<()> {
-        self.commit_keeping(&[]).map(drop)
+    /// Moves the directory, with where it comes from, into place, replacing what is there.
+    pub(crate) fn commit(self, provenance: &Provenance) -> Result<()> {
+        self.commit_keeping(&[], provenance).map(drop)
     }
 
     /// The same, but keeps the entries with these names from the directory being replaced. Returns the
     /// lock of the directory. If the move fails, the staged directory is kept and the error names it.
-    pub(crate) fn commit_keeping(mut self, kept: &[OsString]) -> Result<Option<File>> {
+    pub(crate) fn commit_keeping(
+        mut self,
+        kept: &[OsString],
+        provenance: &Provenance,
+    ) -> Result<Option<File>> {
+        write_provenance(self.path(), provenance)?;
         let (staging, place) = (self.staging.path(), self.place.as_path());
         let replace = || -> io::Result<()> {
             for name in kept {
@@ -392,7 +406,8 @@ pub(crate) fn others(directory: &Path, own: &BTreeSet<String>) -> Result<Vec<OsS
     for entry in fs::read_dir(directory).with_context(cannot)? {
         names.push(entry.with_context(cannot)?.file_name());
     }
-    let is_own = |name: &str| own.contains(name) || own.contains(&format!("{name}/"));
+    let is_own =
+        |name: &str| name == PROVENANCE || own.contains(name) || own.contains(&format!("{name}/"));
     names.retain(|name| !is_staged(name) && !is_own(&name.to_string_lossy()));
     names.sort();
     Ok(names)
@@ -426,7 +441,10 @@ mod tests {
         let staged = StagedDirectory::new(&place).unwrap();
         fs::write(staged.path().join("result"), "ours").unwrap();
         fs::write(&place, "mine").unwrap();
-        let error = staged.commit().unwrap_err().to_string();
+        let error = staged
+            .commit(&Provenance::new(None, Vec::new()))
+            .unwrap_err()
+            .to_string();
         let (_, kept) = error.split_once("; the result is in ").unwrap();
         assert_eq!(
             fs::read_to_string(Path::new(kept).join("result")).unwrap(),

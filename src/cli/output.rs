@@ -74,9 +74,26 @@ const RED: &str = "\x1b[1;31m";
 const YELLOW: &str = "\x1b[1;33m";
 const PLAIN: &str = "\x1b[0m";
 
-/// Whether progress may be drawn: not quiet, and on a terminal.
-pub(crate) fn shows_progress() -> bool {
-    !QUIET.load(Ordering::Relaxed) && io::stderr().is_terminal() && !keep(|_| {})
+/// Where the progress of long work is shown.
+pub(crate) fn progress_place() -> ProgressPlace {
+    if QUIET.load(Ordering::Relaxed) || keep(|_| {}) {
+        ProgressPlace::Nowhere
+    } else if io::stderr().is_terminal() {
+        ProgressPlace::Terminal
+    } else {
+        ProgressPlace::Log
+    }
+}
+
+/// Where progress goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ProgressPlace {
+    /// A terminal, on which a bar may be drawn.
+    Terminal,
+    /// A file or a pipe, which takes lines.
+    Log,
+    /// Nobody reads it.
+    Nowhere,
 }
 
 /// A path on one line: a directory may come from elsewhere, with names of any characters.

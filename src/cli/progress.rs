@@ -1,11 +1,16 @@
-//! The progress of a search and of an export, on a terminal only.
+//! The progress of long work: a bar on a terminal, and a line now and then where there is none.
 
-use crate::cli::output;
+use crate::cli::output::{self, ProgressPlace};
 use crate::optimize::Strategy;
+use crate::printable::printable;
 use crate::report::shown;
 use crate::search::size::{SizeProblem, SizeSearch};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// The time between two lines of progress where there is no terminal.
+const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
 /// How far some work is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -80,18 +85,138 @@ pub(crate) fn followed<T>(progress: &SharedProgress, work: impl FnOnce() -> T) -
     done
 }
 
-/// A progress bar, or nothing if stderr is not a terminal; and what follows the search.
+/// What shows the progress of some work.
+enum Display {
+    Bar(ProgressBar),
+    Lines(Mutex<Lines>),
+    Nothing,
+}
+
+/// Progress as lines of a log.
+struct Lines {
+    /// What is counted, such as `designs`.
+    counted: &'static str,
+    started: Instant,
+    /// When the next line is due, from the start.
+    due: Duration,
+    position: u64,
+    length: Option<u64>,
+    message: String,
+}
+
+impl Lines {
+    /// The line to print now, if it is time for one.
+    fn line(&mut self, elapsed: Duration) -> Option<String> {
+        if elapsed < self.due {
+            return None;
+        }
+        self.due = elapsed + BETWEEN_LINES;
+        let count = match self.length {
+            Some(length) => format!("{}/{length} {}", self.position, self.counted),
+            None if self.counted.is_empty() => String::new(),
+            None => format!("{} {}", self.position, self.counted),
+        };
+        let parts = [count, self.message.clone()];
+        let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        Some(format!("{} s: {}", elapsed.as_secs(), parts.join(", ")))
+    }
+
+    fn print_if_due(&mut self) {
+        if let Some(line) = self.line(self.started.elapsed()) {
+            output::hint(&line);
+        }
+    }
+}
+
+impl Display {
+    /// A bar by a template of `indicatif`, or lines that count `counted`.
+    fn new(template: &str, counted: &'static str, length: Option<u64>) -> Self {
+        match output::progress_place() {
+            ProgressPlace::Terminal => {
+                let bar = match length {
+                    Some(length) => ProgressBar::new(length),
+                    None => ProgressBar::new_spinner(),
+                };
+                if let Ok(style) = ProgressStyle::with_template(template) {
+                    bar.set_style(style);
+                }
+                Self::Bar(bar)
+            }
+            ProgressPlace::Log => Self::Lines(Mutex::new(Lines {
+                counted,
+                started: Instant::now(),
+                due: BETWEEN_LINES,
+                position: 0,
+                length,
+                message: String::new(),
+            })),
+            ProgressPlace::Nowhere => Self::Nothing,
+        }
+    }
+
+    fn change(&self, in_bar: impl FnOnce(&ProgressBar), in_lines: impl FnOnce(&mut Lines)) {
+        match self {
+            Self::Bar(bar) => in_bar(bar),
+            Self::Lines(lines) => {
+                let mut lines = lines.lock().unwrap_or_else(PoisonError::into_inner);
+                in_lines(&mut lines);
+                lines.print_if_due();
+            }
+            Self::Nothing => {}
+        }
+    }
+
+    fn add(&self, count: u64) {
+        self.change(|bar| bar.inc(count), |lines| lines.position += count);
+    }
+
+    fn show(&self, position: u64, length: u64, message: String) {
+        let in_bar = |bar: &ProgressBar| {
+            if bar.length() != Some(length) {
+                bar.reset_eta();
+                bar.set_length(length);
+            }
+            bar.set_message(message.clone());
+            bar.set_position(position);
+        };
+        self.change(in_bar, |lines| {
+            lines.position = position;
+            lines.length = Some(length);
+            lines.message.clone_from(&message);
+        });
+    }
+
+    fn say(&self, message: &str) {
+        let in_bar = |bar: &ProgressBar| {
+            bar.set_message(message.to_owned());
+            bar.tick();
+        };
+        self.change(in_bar, |lines| message.clone_into(&mut lines.message));
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// The progress of a search, for the user and for what follows it.
 pub(crate) struct SearchBar {
-    bar: Option<ProgressBar>,
+    display: Display,
     followed_by: Option<SharedProgress>,
 }
 
 impl SearchBar {
-    /// A bar for a search that may have been resumed.
+    /// That of a search that may have been resumed.
     pub(crate) fn new(search: &impl Strategy) -> Self {
         let followed_by = FOLLOWED_BY.lock().unwrap_or_else(PoisonError::into_inner);
+        let template = "generation {pos}/{len} {wide_bar} {msg} ETA {eta}";
+        let steps = Some(Reached::of(search).steps);
         let new = Self {
-            bar: output::shows_progress().then(|| search_bar(Reached::of(search))),
+            display: Display::new(template, "generations", steps),
             followed_by: followed_by.clone(),
         };
         new.show(search);
@@ -104,134 +229,115 @@ impl SearchBar {
         if let Some(follower) = &self.followed_by {
             follower.set(reached);
         }
-        let Some(bar) = &self.bar else { return };
         let hypervolume = reached.hypervolume.map_or(String::new(), |value| {
             format!(", hypervolume {}", shown::significant(value))
         });
-        bar.set_message(format!("{} evaluations{hypervolume}", reached.evaluations));
-        bar.set_position(reached.step);
-    }
-
-    /// Removes the bar.
-    pub(crate) fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+        let message = format!("{} evaluations{hypervolume}", reached.evaluations);
+        self.display.show(reached.step, reached.steps, message);
     }
 }
 
-fn search_bar(reached: Reached) -> ProgressBar {
-    let bar = ProgressBar::new(reached.steps).with_position(reached.step);
-    let template = "generation {pos}/{len} {wide_bar} {msg} ETA {eta}";
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style);
-    }
-    bar.tick();
-    bar
-}
-
-/// The progress of a search for the fewest satellites, or nothing if stderr is not a terminal.
-pub(crate) struct SizeBar(Option<ProgressBar>);
+/// The progress of a search for the fewest satellites.
+pub(crate) struct SizeBar(Display);
 
 impl SizeBar {
     pub(crate) fn new() -> Self {
-        if !output::shows_progress() {
-            return Self(None);
-        }
-        let bar = ProgressBar::new(0);
         let template = "{msg} {wide_bar} {pos}/{len} designs, {per_sec}, ETA {eta} of this number";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        Self(Some(bar))
+        Self(Display::new(template, "designs", Some(0)))
     }
 
     /// Shows the number of satellites, and the designs of it that are done.
     pub(crate) fn show(&self, problem: &SizeProblem<'_>, search: &SizeSearch) {
-        let Some(bar) = &self.0 else { return };
         let Some((satellites, left, all)) = search.next_level(problem) else {
             return;
         };
-        if bar.length() != Some(all) {
-            bar.reset_eta();
-            bar.set_length(all);
-        }
-        bar.set_message(format!("{satellites} satellites, {} tried", search.tried()));
-        bar.set_position(all - left);
-    }
-
-    /// Removes the bar.
-    pub(crate) fn finish(&self) {
-        if let Some(bar) = &self.0 {
-            bar.finish_and_clear();
-        }
+        let message = format!("{satellites} satellites, {} tried", search.tried());
+        self.0.show(all - left, all, message);
     }
 }
 
 /// The progress of designs that several threads evaluate.
 pub(crate) struct DesignBar {
-    bar: Option<ProgressBar>,
+    display: Display,
     followed_by: Option<SharedProgress>,
 }
 
 impl DesignBar {
     pub(crate) fn new(designs: u64) -> Self {
         let followed_by = FOLLOWED_BY.lock().unwrap_or_else(PoisonError::into_inner);
-        let new = Self {
-            bar: output::shows_progress().then(|| ProgressBar::new(designs)),
-            followed_by: followed_by.clone(),
-        };
         let template = "{wide_bar} {pos}/{len} designs, {per_sec}, ETA {eta}";
-        if let (Some(bar), Ok(style)) = (&new.bar, ProgressStyle::with_template(template)) {
-            bar.set_style(style);
+        Self {
+            display: Display::new(template, "designs", Some(designs)),
+            followed_by: followed_by.clone(),
         }
-        new
     }
 
     /// Counts designs that are done.
     pub(crate) fn add(&self, designs: u64) {
-        if let Some(bar) = &self.bar {
-            bar.inc(designs);
-        }
+        self.display.add(designs);
         if let Some(follower) = &self.followed_by {
             follower.add(designs);
-        }
-    }
-
-    /// Removes the bar.
-    pub(crate) fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
         }
     }
 }
 
 /// Counts the files of an export, which several threads write.
-pub(crate) struct FileCount(Option<ProgressBar>);
+pub(crate) struct FileCount(Display);
 
 impl FileCount {
     pub(crate) fn new() -> Self {
-        if !output::shows_progress() {
-            return Self(None);
-        }
-        let bar = ProgressBar::new_spinner();
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {pos} files, {elapsed}") {
-            bar.set_style(style);
-        }
-        Self(Some(bar))
+        Self(Display::new(
+            "{spinner} {pos} files, {elapsed}",
+            "files",
+            None,
+        ))
     }
 
     /// Counts a file that has been started.
     pub(crate) fn one_more(&self) {
-        if let Some(bar) = &self.0 {
-            bar.inc(1);
-        }
+        self.0.add(1);
+    }
+}
+
+/// The progress of work in a few stages of unlike length.
+pub(crate) struct Stages(Display);
+
+impl Stages {
+    pub(crate) fn new() -> Self {
+        Self(Display::new("{spinner} {msg}, {elapsed}", "", None))
     }
 
-    /// Removes the count.
-    pub(crate) fn finish(&self) {
-        if let Some(bar) = &self.0 {
-            bar.finish_and_clear();
-        }
+    /// Says what is done now.
+    pub(crate) fn begin(&self, stage: &str) {
+        self.0.say(&printable(stage));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_has_a_line_every_ten_seconds_and_none_of_short_work() {
+        let mut lines = Lines {
+            counted: "designs",
+            started: Instant::now(),
+            due: BETWEEN_LINES,
+            position: 7,
+            length: Some(20),
+            message: String::new(),
+        };
+        let mut at = |seconds| lines.line(Duration::from_millis(seconds));
+        assert_eq!(at(9_999), None);
+        assert_eq!(at(12_300).as_deref(), Some("12 s: 7/20 designs"));
+        assert_eq!(at(22_299), None);
+        lines.message = "182 satellites".to_owned();
+        let line = lines.line(Duration::from_secs(40));
+        assert_eq!(line.as_deref(), Some("40 s: 7/20 designs, 182 satellites"));
+        (lines.counted, lines.length) = ("", None);
+        assert_eq!(
+            lines.line(Duration::from_secs(60)).as_deref(),
+            Some("60 s: 182 satellites")
+        );
     }
 }

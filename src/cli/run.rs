@@ -2,6 +2,7 @@
 
 use crate::cli::args::MemberPick;
 use crate::cli::interrupt::Removed;
+use crate::cli::provenance::provenance;
 use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
 use crate::exchange::constellation::Constellation;
@@ -10,7 +11,7 @@ use crate::run::checkpoint::{self, Identity, RecordLog};
 use crate::run::evaluations::EVALUATIONS_FILES;
 use crate::run::{
     CHECKPOINT, CHECKPOINT_LOG, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
-    PREVIOUS_CHECKPOINT, SCENARIO, VALIDATION, result_files,
+    PREVIOUS_CHECKPOINT, Provenance, SCENARIO, VALIDATION, result_files,
 };
 use crate::scenario::Scenario;
 use anyhow::{Context, Result, bail};
@@ -22,7 +23,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// File that names the process using a run directory.
-const HOLDER: &str = ".lock";
+pub(crate) const HOLDER: &str = ".lock";
 
 /// What this program writes in a run directory.
 fn own() -> BTreeSet<String> {
@@ -56,6 +57,7 @@ fn held(directory: &Path) -> Result<Option<File>> {
 pub(crate) struct RunDirectory {
     path: PathBuf,
     identity: Identity,
+    provenance: Provenance,
     /// The initial contents of the run: the scenario, copies of its files, the manifest.
     first_files: Vec<(String, Vec<u8>)>,
     /// The checkpoints in the directory when it was opened.
@@ -178,6 +180,7 @@ impl RunDirectory {
             path,
             first_files: study.first_files(&identity)?,
             identity,
+            provenance: provenance(vec![study.stamp()?]),
             found: FoundCheckpoints::default(),
             recent: [None, None],
             log: RecordLog::default(),
@@ -233,7 +236,7 @@ impl RunDirectory {
             return Ok(());
         }
         files::write_all(staged.path(), &self.first_files)?;
-        self.lock = staged.commit_keeping(kept)?;
+        self.lock = staged.commit_keeping(kept, &self.provenance)?;
         Ok(())
     }
 
@@ -397,14 +400,14 @@ impl RunDirectory {
         if let Some(previous) = self.before_last()? {
             files::write_atomically(&staged.path().join(PREVIOUS_CHECKPOINT), &previous)?;
         }
-        self.lock = staged.commit_keeping(&self.others()?)?;
+        self.lock = staged.commit_keeping(&self.others()?, &self.provenance)?;
         Ok(Placed::Written)
     }
 
     /// Writes the results of given constellations to a sibling directory and moves it into place.
     pub(crate) fn place(&mut self, scenario: &Scenario, result: &OptimizeResult) -> Result<()> {
         let staged = self.staged_results(scenario, result)?;
-        self.lock = staged.commit_keeping(&self.others()?)?;
+        self.lock = staged.commit_keeping(&self.others()?, &self.provenance)?;
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 //! Several processes may work in one, on one machine or on a shared file system: every file is written beside its place and
 //! renamed, and two results of one chunk are the same bytes.
 
+use crate::cli::provenance::provenance;
 use crate::cli::study::Study;
 use crate::cli::{files, output};
 use crate::evaluate::Evaluator;
@@ -146,6 +147,7 @@ impl SweepStore {
         force: bool,
     ) -> Result<()> {
         let staged = files::StagedDirectory::new(path)?;
+        let provenance = provenance(vec![study.stamp()?]);
         let mut first = study.first_files(&study.identity()?)?;
         if let SweepDesigns::List(list) = designs {
             first.push((DESIGNS_CSV.to_owned(), designs_csv(list)?.into_bytes()));
@@ -157,10 +159,10 @@ impl SweepStore {
         files::write_all(staged.path(), &first)?;
         fs::create_dir(staged.path().join(CHUNKS))?;
         if force {
-            return staged.commit_keeping(&[]).map(drop);
+            return staged.commit(&provenance);
         }
         // Of several processes that begin the same sweep, the first one makes it and the others take it.
-        staged.commit_if_vacant()
+        staged.commit_if_vacant(&provenance)
     }
 
     /// What it is a sweep of.

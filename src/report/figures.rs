@@ -15,6 +15,7 @@ mod histogram;
 mod map;
 mod outages;
 mod phases;
+mod residuals;
 mod study;
 mod table;
 
@@ -33,6 +34,7 @@ pub use histogram::histogram;
 pub use map::map;
 pub use outages::timeline;
 pub use phases::{NamedPhases, phases};
+pub(crate) use residuals::residual_figures;
 pub use study::{NamedChart, deviations_name, study_figures};
 
 pub(in crate::report) use curves::at_epoch;

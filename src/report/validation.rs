@@ -1,8 +1,14 @@
-//! A validation as text, Markdown and `JUnit`.
+//! A validation as text, CSV and `JUnit`; [`appendix`] has what a reviewer reads.
+
+mod appendix;
+
+pub use appendix::validation_markdown;
+#[cfg(feature = "figures")]
+pub(crate) use appendix::{Headline, Section, headline, sections};
 
 use super::{Align, Table};
 use crate::keyword::Keyword;
-use crate::printable::{markdown, printable};
+use crate::printable::printable;
 use crate::run::{Basis, ValidateResult};
 use crate::units::{counted, round_decimal};
 use crate::validate::distribution::Distribution;
@@ -340,68 +346,6 @@ fn reasons(checks: &[Check]) -> Vec<String> {
     seen.iter()
         .map(|(reason, names)| format!("{}: {reason}", names.join(", ")))
         .collect()
-}
-
-/// The validation for an appendix.
-#[must_use]
-pub fn validation_markdown(result: &ValidateResult) -> String {
-    let mut text = format!(
-        "# Validation of `{}`\n\nScenario {} (`{}`), propagation model `{}`, navwalker {}.\n\n{}.\n\n**{}**\n",
-        result.subject(),
-        result.scenario.name,
-        result.scenario.hash,
-        result.model,
-        result.version,
-        conventions(&result.basis),
-        verdict(result)
-    );
-    if !result.findings.notes.is_empty() {
-        text += "\n";
-    }
-    for note in &result.findings.notes {
-        let _ = writeln!(text, "- {note}");
-    }
-    if !result.findings.budget.is_empty() {
-        text += "\n## Error budget\n\nSecond minus first, in the radial, in-track and cross-track axes of the first.\n\n";
-        text += &budget_table(&result.findings.budget).to_markdown();
-        text += "\n";
-        for line in &result.findings.budget {
-            let worst = &line.worst;
-            let _ = writeln!(
-                text,
-                "- `{}`: {}; worst {} at {} s, {} km",
-                line.case,
-                line.cause,
-                worst.satellite,
-                worst.elapsed_s,
-                digits(worst.distance_km)
-            );
-        }
-    }
-    if !result.findings.sweep.is_empty() {
-        text += "\n## Over inclination and altitude\n\nCircular patterns of 12 satellites; cases as in the budget. The last column is the largest fraction of a gate.\n\n";
-        text += &sweep_table(&result.findings.sweep).to_markdown();
-    }
-    text += "\n## Checks\n\nA check without a gate is reported for information (info) and counts neither as passed nor as failed.\n\n";
-    text += &check_table(&result.findings.checks).to_markdown();
-    text += "\nReasons for the gates:\n\n";
-    for reason in reasons(&result.findings.checks) {
-        let _ = writeln!(text, "- {reason}");
-    }
-    let residuals = distributions(result);
-    if !residuals.is_empty() {
-        text += "\n## Residuals\n\nMagnitudes, and the input that gives the largest.\n\n";
-        text += &distribution_table(&residuals).to_markdown();
-    }
-    for comparison in &result.findings.files {
-        let _ = writeln!(text, "\n## File {}\n", markdown(&comparison.source));
-        text += &satellite_table(comparison).to_markdown();
-        text += "\n";
-        for line in comparison_lines(comparison) {
-            let _ = writeln!(text, "- {}", markdown(&line));
-        }
-    }
-    text
 }
 
 /// A check as a row of CSV; JSON has the same fields except the verdict.

@@ -118,6 +118,18 @@ test("the paper's report is light, loads fast and follows a click", async () => 
     "map-availability", "cdf-visible", "series-max-pdop", "series-mean-pdop", "tail", "convergence", "parallel", "budget"]) {
     assert.ok(await page.locator(`#${id} svg.main-svg`).count() > 0, `${id} is not drawn`);
   }
+  // Light is good on every map, whether more is better or less.
+  const reversed = await page.evaluate(() => ["map-mean-visible", "map-availability", "map-mean-pdop", "map-longest-outage-s"]
+    .map((id) => document.getElementById(id).data[0].reversescale));
+  assert.deepEqual(reversed, [false, false, true, true]);
+  // Every figure can be saved, from the keyboard too.
+  for (const [n, name] of ["svg", "png"].entries()) {
+    const button = page.locator("figure:has(#map-max-pdop) button.save").nth(n);
+    await button.focus();
+    const [saved] = await Promise.all([page.waitForEvent("download"), page.keyboard.press("Enter")]);
+    assert.equal(saved.suggestedFilename(), `map-max-pdop.${name}`);
+    assert.ok(statSync(await saved.path()).size > 5000);
+  }
   const before = await place(page);
   const maps = ["map-mean-visible", "map-mean-pdop", "map-p95-pdop", "map-max-pdop"];
   const values = await Promise.all(maps.map((id) => mapValues(page, id)));

@@ -289,6 +289,7 @@ fn the_run_directory_is_whole_and_repeatable() {
         "front.json",
         "history.csv",
         "history.json",
+        "provenance.json",
         "run.json",
         "scenario.toml",
     ];
@@ -556,6 +557,7 @@ fn validate_reports_in_every_form() {
         "report.json",
         "report.csv",
         "report.md",
+        "report.html",
         "report.junit.xml",
     ] {
         assert!(
@@ -563,6 +565,22 @@ fn validate_reports_in_every_form() {
             "{name}"
         );
     }
+    // What a reviewer asks of a gate stands beside it: its reason, and an error that fails it.
+    for name in ["report.md", "report.html"] {
+        let text = fs::read_to_string(directory.path().join("report").join(name)).unwrap();
+        let row = |line: &&str| {
+            line.starts_with(['|', '<'])
+                && line.contains("sgp4/kepler-slot/closed-form")
+                && !line.contains("<svg")
+        };
+        let row = text.lines().find(row).unwrap();
+        assert!(
+            row.contains("dM/dt = n, without its J2 term"),
+            "{name}: {row}"
+        );
+    }
+    let page = fs::read_to_string(directory.path().join("report/report.html")).unwrap();
+    assert!(page.matches("<svg").count() >= 3 && !page.contains("<script"));
 }
 
 #[test]

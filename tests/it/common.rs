@@ -20,7 +20,8 @@ pub(crate) fn signal(child: &Child, name: &str) {
     assert!(Command::new("kill").args(kill).status().unwrap().success());
 }
 
-/// All files below a directory with their contents, by their paths from it.
+/// All files below a directory with their contents, by their paths from it; what says by which command they were made is left
+/// out.
 pub(crate) fn contents(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut waiting = vec![directory.to_owned()];
@@ -29,7 +30,7 @@ pub(crate) fn contents(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 waiting.push(path);
-            } else {
+            } else if !path.ends_with("provenance.json") {
                 let name = path.strip_prefix(directory).unwrap().to_owned();
                 found.insert(name, fs::read(path).unwrap());
             }

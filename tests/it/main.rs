@@ -22,6 +22,7 @@ mod keys;
 mod limits;
 mod look;
 mod names;
+mod provenance;
 mod readers;
 mod reference;
 mod regions;

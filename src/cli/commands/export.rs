@@ -2,6 +2,7 @@
 
 use crate::cli::args::{ChosenArgs, ExportArgs, StudyArgs};
 use crate::cli::progress::FileCount;
+use crate::cli::provenance::provenance;
 use crate::cli::study::Study;
 use crate::cli::{Status, coincidence, constellations, files, limits, output, read_constellation};
 use crate::constellation::gnss::Preset;
@@ -82,8 +83,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     });
     let manifest = source.export(&products, shown, &sink);
     let manifest = manifest.with_context(not_exported)?;
-    progress.finish();
-    staged.commit()?;
+    drop(progress);
+    staged.commit(&provenance(vec![study.stamp()?]))?;
     output::result(&text(args, &manifest))?;
     warn(args);
     warn_of_identities(&manifest.changed_identities);

@@ -213,7 +213,7 @@ pub(super) fn search(
         directory.save(&mut search)?;
         progress.show(&search);
     }
-    progress.finish();
+    drop(progress);
     let mut result = OptimizeResult::new(&problem, &search, scenario, study.stamp()?);
     if let Some(sweep) = sweep {
         result.certify(sweep, &scenario.objectives.minimize);

@@ -2,6 +2,7 @@
 
 use super::plot;
 use crate::cli::args::{ReportArgs, ViewArgs};
+use crate::cli::progress::Stages;
 use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
 use crate::report::page::{self, FailureSection, Page};
@@ -35,9 +36,13 @@ pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<Path
 /// Writes the page, with failures of so many satellites if asked for.
 fn write(args: &ViewArgs, out: &Path, failing: Option<(u8, Option<u32>)>) -> Result<()> {
     let view = View::new(args)?;
+    let stages = Stages::new();
     files::refuse_inputs(out, view.inputs.iter().map(PathBuf::as_path))?;
     let staged = files::StagedFile::with_directories(out)?;
     let mut html = Vec::new();
+    if failing.is_some() {
+        stages.begin("evaluating what failures do");
+    }
     let failures = failing.map(|failing| failure_section(&view, failing));
     let failures = failures.transpose()?;
     let page = Page {
@@ -50,6 +55,7 @@ fn write(args: &ViewArgs, out: &Path, failing: Option<(u8, Option<u32>)>) -> Res
         fixed: view.fixed.as_ref(),
         failures: failures.as_ref(),
     };
+    stages.begin("drawing the page");
     page::write(&page, &mut html)?;
     staged.commit(&html)
 }

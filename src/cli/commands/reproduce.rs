@@ -1,6 +1,8 @@
 //! `navwalker reproduce`: published numbers next to ours, with the tables and figures of their studies.
 
 use crate::cli::args::{ReproduceArgs, StudyFormat};
+use crate::cli::progress::Stages;
+use crate::cli::provenance::provenance;
 use crate::cli::{Status, files, limits, output};
 use crate::keyword::nearest;
 use crate::printable::printable;
@@ -63,7 +65,10 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     let mut studies = Vec::new();
     let mut status = Status::Done;
     let mut scenarios = Vec::new();
-    for one in chosen {
+    let stages = Stages::new();
+    let count = chosen.len();
+    for (n, one) in chosen.into_iter().enumerate() {
+        stages.begin(&format!("study {} of {count}: {}", n + 1, one.study.name));
         let judged = one.run()?;
         if judged.statements.iter().any(|one| one.is_unexpected()) {
             status = Status::Failed;
@@ -72,6 +77,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
         let stamp = one.stamp(&judged.scenario)?;
         studies.push(StudyResult::new(judged, stamp));
     }
+    stages.begin("drawing the figures");
     let result = StudiesResult::new(studies);
     let mut written = tables(&result)?;
     if let [scenario] = scenarios.as_slice() {
@@ -83,7 +89,13 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     for (name, bytes) in &written {
         files::write_atomically(&staged.path().join(name), bytes)?;
     }
-    staged.commit_keeping(&files::others(&place.directory, &place.own)?)?;
+    let stamps = result
+        .studies
+        .iter()
+        .map(|study| study.stamp.scenario.clone());
+    let provenance = provenance(stamps.collect());
+    staged.commit_keeping(&files::others(&place.directory, &place.own)?, &provenance)?;
+    drop(stages);
     output::result(&render(&result, args.format)?)?;
     output::hint(&format!(
         "\nreport written to {}",

@@ -116,7 +116,7 @@ fn searched(
         }
         progress.show(problem, search);
     }
-    progress.finish();
+    drop(progress);
     directory.save(search)?;
     let is_asked = stoppable.end();
     Ok(is_asked && !search.is_done())

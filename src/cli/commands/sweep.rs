@@ -154,7 +154,7 @@ fn evaluated(
             break;
         }
     }
-    bar.finish();
+    drop(bar);
     let is_interrupted = stoppable.end();
     done.map(|()| !is_interrupted)
 }

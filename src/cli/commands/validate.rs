@@ -4,6 +4,8 @@ use crate::cli::args::{ReportFormat, ValidateArgs};
 use crate::cli::constellations::{
     no_file_to_select_from, propagate, refuse_without, study_and_constellations,
 };
+use crate::cli::progress::Stages;
+use crate::cli::provenance::provenance;
 use crate::cli::study::Study;
 use crate::cli::{Status, files, output, read_constellation};
 use crate::constellation::Design;
@@ -13,7 +15,9 @@ use crate::exchange::import::Fleet;
 use crate::exchange::lint::Format;
 use crate::exchange::manifest::{FILE_NAME, Manifest};
 use crate::printable::printable;
-use crate::report::{checks_csv, checks_junit, validation_markdown, validation_text};
+use crate::report::{
+    checks_csv, checks_junit, validation_markdown, validation_text, write_validation_page,
+};
 use crate::run::ValidateResult;
 use crate::scenario::{Scenario, builtin};
 use crate::validate::file::{Comparand, ReferenceConstellation, against_file, comparands};
@@ -47,6 +51,9 @@ const REPORTS: [(&str, ReportFormat); 5] = [
     ("report.junit.xml", ReportFormat::Junit),
 ];
 
+/// The reports as a page to read and print, with figures.
+const REPORT_PAGE: &str = "report.html";
+
 /// The targets on the command line; one with a dot or a slash is a file or a directory.
 fn targets(typed: &[String]) -> Result<Vec<Against>> {
     let one = |name: &String| {
@@ -67,7 +74,8 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     let run = args.chosen.run.as_deref().filter(|_| args.report);
     let out = args.out.clone().or(run.map(|run| run.join("validation")));
     if let Some(directory) = &out {
-        let own = REPORTS.map(|(name, _)| name.to_owned()).into();
+        let names = REPORTS.iter().map(|(name, _)| *name).chain([REPORT_PAGE]);
+        let own = names.map(str::to_owned).collect();
         files::require_replaceable(directory, args.force, &own)?;
     }
     let (study, constellations) = study_and_constellations(&args.study, &args.chosen)?;
@@ -87,6 +95,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
         targets: &targets,
         sources: sources(&targets, args)?,
         study: &study,
+        stages: Stages::new(),
     };
     let mut findings = Findings::default();
     for one in &constellations {
@@ -97,6 +106,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
         });
     }
     findings.append(subjects.of_study()?);
+    drop(subjects);
     let model = evaluator.setup().model;
     let against = args
         .against
@@ -126,6 +136,7 @@ struct Subjects<'a> {
     /// The files of each target that is files.
     sources: Vec<Vec<ComparedFiles>>,
     study: &'a Study,
+    stages: Stages,
 }
 
 impl Subjects<'_> {
@@ -166,7 +177,11 @@ impl Subjects<'_> {
                 continue;
             }
             match &one.design {
-                Some(design) => findings.append(self.of_shells(target, design)?),
+                Some(design) => {
+                    self.stages
+                        .begin(&format!("{}: comparing with {target}", one.name));
+                    findings.append(self.of_shells(target, design)?);
+                }
                 None if self.is_all_with_files() => {}
                 None => bail!(
                     "{}: {target} checks the propagation of a design; satellites from files have a theory of their \
@@ -189,6 +204,8 @@ impl Subjects<'_> {
             None => ReferenceConstellation::of_satellites(ephemeris, self.evaluator)?,
         };
         for source in self.sources.iter().flatten() {
+            self.stages
+                .begin(&format!("{}: comparing with {}", one.name, source.name));
             findings.append(against_file(
                 &expected,
                 &source.name,
@@ -339,7 +356,10 @@ fn write_reports(staged: files::StagedDirectory, result: &ValidateResult) -> Res
         let text = render(result, format)?;
         files::write_atomically(&staged.path().join(name), text.as_bytes())?;
     }
-    staged.commit()
+    let mut page = Vec::new();
+    write_validation_page(result, &mut page)?;
+    files::write_atomically(&staged.path().join(REPORT_PAGE), &page)?;
+    staged.commit(&provenance(vec![result.scenario.clone()]))
 }
 
 fn render(result: &ValidateResult, format: ReportFormat) -> Result<String> {

@@ -1,6 +1,6 @@
 //! Protection of inputs and foreign files: what may be written, and what `--force` may replace.
 
-use crate::run::MANIFEST;
+use crate::run::{MANIFEST, PROVENANCE};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fs;
@@ -71,12 +71,13 @@ pub(super) fn refuse_ground(place: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Refuses to replace a directory that matters beyond this program, or contains files not in `own`, a list of relative
-/// paths with `/`; a path that ends in `/` covers everything below it.
+/// Refuses to replace a directory that matters beyond this program, or contains files besides its provenance that are not
+/// in `own`, a list of relative paths with `/`; a path that ends in `/` covers everything below it.
 pub(crate) fn refuse_foreign(directory: &Path, own: &BTreeSet<String>) -> Result<()> {
     refuse_ground(directory).with_context(|| format!("cannot replace {}", directory.display()))?;
     let is_own = |path: &str| {
-        own.contains(path)
+        path == PROVENANCE
+            || own.contains(path)
             || own
                 .iter()
                 .any(|own| own.ends_with('/') && path.starts_with(own.as_str()))

@@ -62,6 +62,13 @@ fn told(case: &str) -> String {
         "osculating-j2/sgp4" => "J2 with short periods, SGP4",
         "osculating-j2/sgp4-no-j3j4" => "J2 with short periods, SGP4 without J3 and J4",
         "kepler-slot" => "mean motion in the wrong slot",
+        "sgp4-no-j3j4/sgp4-no-j3" => "SGP4 without J3 and J4, without J3",
+        "sgp4/sgp4-egm96" => "SGP4, SGP4 with constants of EGM96",
+        "sgp4/sgp4-improved" => "SGP4, SGP4 in improved mode",
+        "sgp4-at-tle-epoch/sgp4-written-tle" => {
+            "elements at the epoch of the TLE, digits of the TLE"
+        }
+        "sgp4/sgp4-at-tle-epoch" => "SGP4, from the epoch of the TLE",
         other => other,
     };
     cause.to_owned()

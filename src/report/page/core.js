@@ -104,7 +104,27 @@ const Core = (() => {
 
   const figures = new Map();
   const CONFIG = { displaylogo: false, responsive: true, displayModeBar: matchMedia("(hover: hover)").matches ? "hover" : false,
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+    modeBarButtonsToRemove: ["toImage", "select2d", "lasso2d", "autoScale2d"] };
+  const SAVED = { svg: "SVG", png: "PNG" };
+
+  /** Buttons in the caption of a figure that save it: as vectors, or in four times the pixels of the screen. */
+  function offerToSave(figure) {
+    const { element } = figure;
+    const caption = element.parentElement.querySelector("figcaption");
+    for (const [format, name] of Object.entries(SAVED)) {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.className = "save";
+      button.textContent = name;
+      button.setAttribute("aria-label", "save " + element.id + " as " + name);
+      button.addEventListener("click", async () => {
+        if (!figure.drawn) await draw(figure);
+        const { width, height } = element.getBoundingClientRect();
+        Plotly.downloadImage(element, { format, width, height, scale: format === "png" ? 4 : 1, filename: element.id });
+      });
+      caption?.append(" ", button);
+    }
+  }
 
   function draw(figure) {
     const { data: traces, layout } = figure.build(theme());
@@ -129,7 +149,9 @@ const Core = (() => {
   function figure(id, { build, click, follows = true }) {
     const element = document.getElementById(id);
     if (!element) return;
-    figures.set(id, { element, build, click, follows, drawn: false });
+    const made = { element, build, click, follows, drawn: false };
+    figures.set(id, made);
+    offerToSave(made);
     seen.observe(element);
   }
 

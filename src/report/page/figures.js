@@ -113,6 +113,26 @@
   const LABELS = { "mean-visible": "satellites", "mean-pdop": "PDOP", "p95-pdop": "PDOP", "max-pdop": "PDOP",
     "availability": "fraction", "longest-outage-s": "s", "coverage-4": "fraction", "gain-mean-pdop": "gain" };
 
+  /** Measures of which less is better: their colours run the other way, so that light is good on every map. */
+  const LESS_IS_BETTER = ["mean-pdop", "p95-pdop", "max-pdop", "longest-outage-s"];
+
+  /** A range so many times as high as its low end has logarithmic colours. */
+  const LOG_RATIO = 20;
+
+  /** The colour of a value, its scale and the bar beside it, for a range of values. */
+  function colouring(measure, range, colours) {
+    const bar = { title: { text: LABELS[measure], side: "right" }, thickness: 12, outlinewidth: 0, tickcolor: colours.line };
+    const scale = { colorscale: "Viridis", reversescale: LESS_IS_BETTER.includes(measure) };
+    if (!range) return { shade: (value) => value, ends: [undefined, undefined], scale, bar };
+    const [low, high] = range;
+    if (low === high) return { shade: (value) => value, ends: [low - 0.01 * (Math.abs(high) || 1), high], scale, bar: { ...bar, tickvals: [high] } };
+    if (!(low > 0 && high / low >= LOG_RATIO)) return { shade: (value) => value, ends: range, scale, bar };
+    const decades = [...Array(Math.ceil(Math.log10(high / low)) + 2).keys()].map((n) => 10 ** (Math.floor(Math.log10(low)) + n));
+    const ticks = decades.flatMap((decade) => [decade, 2 * decade, 5 * decade]).filter((tick) => tick >= low && tick <= high);
+    return { shade: (value) => (value === null ? null : Math.log10(value)), ends: range.map(Math.log10), scale,
+      bar: { ...bar, tickvals: ticks.map(Math.log10), ticktext: ticks.map((tick) => digits(tick, 3)) } };
+  }
+
   /** The range of a measure over all maps of it that the page has. */
   function commonRange(measure) {
     let lo = Infinity, hi = -Infinity;
@@ -191,24 +211,21 @@
       const cuts = cutsOf(state.place);
       const values = cuts ? cuts.maps[measure] : region.latitude_deg.map(() => null);
       const range = document.getElementById("common-scale").checked ? commonRange(measure) : ownRange(values);
-      const same = range && range[0] === range[1];
-      if (same) range[0] -= 0.01 * (Math.abs(range[1]) || 1);
-      const bar = { title: { text: LABELS[measure], side: "right" }, thickness: 12, outlinewidth: 0, tickcolor: colours.line,
-        ...(same && { tickvals: [range[1]] }) };
+      const { shade, ends: [low, high], scale, bar } = colouring(measure, range, colours);
+      /** Cells in their colours; the pointer shows their values. */
+      const cells = ({ x, y, z }) => ({ type: "heatmap", x, y, z: z.map((row) => row.map(shade)), customdata: z, ...scale,
+        zsmooth: false, colorbar: bar, zmin: low, zmax: high });
       const traces = [];
       const hasCells = region.step_deg || region.rows_deg.length > 0;
       if (region.rows_deg.length > 0) {
-        traces.push({ type: "heatmap", ...raster(region, values), colorscale: "Viridis", zsmooth: false, colorbar: bar,
-          zmin: range?.[0], zmax: range?.[1], hovertemplate: "%{y:.2f}° N, %{x:.2f}° E<br>%{z:.5~g}<extra></extra>" });
+        traces.push({ ...cells(raster(region, values)), hovertemplate: "%{y:.2f}° N, %{x:.2f}° E<br>%{customdata:.5~g}<extra></extra>" });
       } else if (region.step_deg) {
-        traces.push({ type: "heatmap", ...lattice(region, values), colorscale: "Viridis", zsmooth: false, colorbar: bar,
-          zmin: range?.[0], zmax: range?.[1],
-          hovertemplate: "%{y}° N, %{x}° E<br>%{z:.5~g}<extra></extra>" });
+        traces.push({ ...cells(lattice(region, values)), hovertemplate: "%{y}° N, %{x}° E<br>%{customdata:.5~g}<extra></extra>" });
       } else {
         const isNamed = region.name.length <= MOST_NAMES && region.name.some((name) => name !== "");
         traces.push({ type: "scatter", mode: isNamed ? "markers+text" : "markers", x: region.longitude_deg, y: region.latitude_deg,
           ...(isNamed && { texttemplate: "%{customdata}", customdata: region.name.map(plain), textposition: "top center", textfont: { size: 10 } }),
-          marker: { size: 12, color: values, colorscale: "Viridis", colorbar: bar, cmin: range?.[0], cmax: range?.[1],
+          marker: { size: 12, color: values.map(shade), ...scale, colorbar: bar, cmin: low, cmax: high,
             line: { width: 1, color: colours.ink } },
           text: values.map((v, n) => (region.name[n] ? plain(region.name[n]) + "<br>" : "") + digits(v)), hovertemplate: "%{y}° N, %{x}° E<br>%{text}<extra></extra>" });
       }
@@ -394,7 +411,15 @@
   if (data.history.length > 0) figure("convergence", { build: convergence, follows: false });
   if (data.budget.length > 0) figure("budget", { build: budget, follows: false });
 
-  document.getElementById("close-up")?.addEventListener("change", () => Core.refresh(true));
+  // A front that others would squash is shown close up.
+  const closeUp = document.getElementById("close-up");
+  if (closeUp) {
+    const extent = (values) => Math.max(...values) - Math.min(...values);
+    const isSquashed = (n) => n !== null && count > 1
+      && extent(alongAxis(n).slice(0, count).filter((v) => v !== null)) < 0.4 * extent(alongAxis(n).filter((v) => v !== null));
+    closeUp.checked = isSquashed(shown.x) || isSquashed(shown.y);
+    closeUp.addEventListener("change", () => Core.refresh(true));
+  }
 
   const axes = document.getElementById("axes");
   // With several shells, the reader chooses the one that gives the colours.

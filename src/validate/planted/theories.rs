@@ -34,15 +34,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
         model: Model::TwoBody,
         parts: Parts::default,
         reaches: MODEL,
-        fails: &[
-            "sgp4/two-body/sgp4/in-track-rms",
-            "sgp4/two-body/sgp4/cross-track-rms",
-            "sgp4/two-body/sgp4/in-track-growth",
-            "sgp4/two-body/sweep",
-            "sgp4/rates/node/two-body",
-            "sgp4/rates/argument-of-latitude/two-body",
-            "sgp4/decisions/flipped-decisions",
-        ],
         related: &["two-body", "decisions"],
     },
     PlantedError {
@@ -59,19 +50,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: MODEL,
-        fails: &[
-            "sgp4/mean-j2/sgp4/in-track-rms",
-            "sgp4/mean-j2/sgp4/in-track-growth",
-            "sgp4/mean-j2/sgp4-no-j3j4/in-track-rms",
-            "sgp4/mean-j2/sgp4-no-j3j4/in-track-growth",
-            "sgp4/mean-j2/sweep",
-            "sgp4/kepler-slot/closed-form",
-            "sgp4/rates/argument-of-latitude/mean-j2",
-            "sgp4/decisions/flipped-decisions",
-            "sgp4/tle/decisions/flipped-decisions",
-            "numerical/1-days/in-track-drift",
-            "analytic/rates/argument-of-latitude",
-        ],
         related: SECULAR,
     },
     PlantedError {
@@ -82,11 +60,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Sgp4],
-        fails: &[
-            "sgp4/mean-j2/sgp4/in-track-growth",
-            "sgp4/rates/argument-of-latitude/sgp4",
-            "sgp4/tle/decisions/flipped-decisions",
-        ],
         related: SGP4,
     },
     PlantedError {
@@ -101,11 +74,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: MODEL,
-        fails: &[
-            "sgp4/sgp4/sgp4/in-track-rms",
-            "sgp4/sgp4/sgp4/in-track-growth",
-            "sgp4/sgp4/sweep",
-        ],
         related: &["sgp4/sgp4/", "analytic/mean-visible"],
     },
     PlantedError {
@@ -116,12 +84,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: MODEL,
-        fails: &[
-            "sgp4/j2-osculating/sgp4-no-j3j4/radial-rms",
-            "sgp4/j2-osculating/sgp4-no-j3j4/cross-track-rms",
-            "sgp4/j2-osculating/sweep",
-            "numerical/1-days/in-track-drift",
-        ],
         related: &["j2-osculating", "numerical/", "analytic/mean-visible"],
     },
     PlantedError {
@@ -141,15 +103,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: MODEL,
-        fails: &[
-            "sgp4/mean-j2/sgp4/in-track-growth",
-            "sgp4/mean-j2/sgp4/cross-track-rms",
-            "sgp4/rates/node/mean-j2",
-            "numerical/1-days/in-track-drift",
-            "numerical/1-days/node-rate",
-            "analytic/rates/node",
-            "analytic/rates/argument-of-latitude",
-        ],
         related: SECULAR,
     },
     PlantedError {
@@ -167,14 +120,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: MODEL,
-        fails: &[
-            "sgp4/mean-j2/sgp4/cross-track-rms",
-            "sgp4/mean-j2/sgp4-no-j3j4/cross-track-rms",
-            "sgp4/rates/node/mean-j2",
-            "numerical/1-days/node-rate",
-            "numerical/1-days/cross-track-after-fit",
-            "analytic/rates/node",
-        ],
         related: SECULAR,
     },
     PlantedError {
@@ -190,12 +135,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: MODEL,
-        fails: &[
-            "sgp4/mean-j2/sgp4/radial-rms",
-            "sgp4/mean-j2/sgp4-no-j3j4/radial-rms",
-            "sgp4/mean-j2/sgp4/in-track-growth",
-            "sgp4/radius-shift/closed-form",
-        ],
         related: SECULAR,
     },
     PlantedError {
@@ -213,7 +152,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: MODEL,
-        fails: &["sgp4/rates/node/sgp4", "sgp4/rates/node/mean-j2"],
         related: &["sgp4/", "numerical/", "analytic/"],
     },
     PlantedError {
@@ -231,7 +169,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: MODEL,
-        fails: &["analytic/symmetry/turn"],
         related: &["analytic/symmetry/turn", "analytic/mean-visible"],
     },
     PlantedError {
@@ -245,11 +182,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Sgp4],
-        fails: &[
-            "sgp4/verification/published",
-            "sgp4/verification/afspc",
-            "sgp4/verification/improved",
-        ],
         related: SGP4,
     },
     PlantedError {
@@ -263,11 +195,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Sgp4],
-        fails: &[
-            "sgp4/verification/afspc",
-            "sgp4/frozen-eccentricity/closed-form",
-            "sgp4/frozen-eccentricity/cancelled",
-        ],
         related: SGP4,
     },
     PlantedError {
@@ -278,7 +205,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Sgp4],
-        fails: &["sgp4/frozen-eccentricity/cancelled"],
         related: &["sgp4/frozen-eccentricity/cancelled"],
     },
     PlantedError {
@@ -293,7 +219,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Sgp4],
-        fails: &["sgp4/tle/digits"],
         related: &["sgp4/tle/digits"],
     },
     PlantedError {
@@ -304,7 +229,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Sgp4],
-        fails: &["sgp4/tle/epoch"],
         related: &["sgp4/tle/epoch"],
     },
     PlantedError {
@@ -315,7 +239,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Sgp4, Target::Analytic],
-        fails: &["sgp4/sidereal-time"],
         related: &["sgp4/sidereal-time", "analytic/geometry"],
     },
 ];

@@ -28,10 +28,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::GeographicLib],
-        fails: &[
-            "geographiclib/elevation",
-            "geographiclib/curvature-method/low",
-        ],
         related: &["geographiclib/"],
     },
     PlantedError {
@@ -44,7 +40,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::GeographicLib],
-        fails: &["geographiclib/elevation"],
         related: &["geographiclib/"],
     },
     PlantedError {
@@ -59,10 +54,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::GeographicLib],
-        fails: &[
-            "geographiclib/elevation",
-            "geographiclib/footprint/geodesic-polygon",
-        ],
         related: &["geographiclib/"],
     },
     PlantedError {
@@ -80,7 +71,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::GeographicLib],
-        fails: &["geographiclib/azimuth"],
         related: &["geographiclib/azimuth"],
     },
     PlantedError {
@@ -98,11 +88,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Numerical],
-        fails: &[
-            "numerical/conserved/energy",
-            "numerical/1-days/in-track-drift",
-            "numerical/1-days/node-rate",
-        ],
         related: &["numerical/"],
     },
     PlantedError {
@@ -117,11 +102,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Numerical],
-        fails: &[
-            "numerical/conserved/polar-momentum",
-            "numerical/1-days/in-track-after-fit",
-            "numerical/1-days/cross-track-after-fit",
-        ],
         related: &["numerical/"],
     },
     PlantedError {
@@ -138,7 +118,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Numerical],
-        fails: &["numerical/j3/frozen-eccentricity"],
         related: &["numerical/j3/frozen-eccentricity"],
     },
     PlantedError {
@@ -152,7 +131,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Analytic],
-        fails: &["analytic/geometry/mean-pdop", "analytic/geometry/max-pdop"],
         related: &["analytic/geometry/mean-pdop", "analytic/geometry/max-pdop"],
     },
     PlantedError {
@@ -171,11 +149,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Analytic],
-        fails: &[
-            "analytic/mask",
-            "analytic/mean-visible",
-            "analytic/geometry/mean-visible",
-        ],
         related: &["analytic/"],
     },
     PlantedError {
@@ -191,7 +164,6 @@ pub(super) const ERRORS: &[PlantedError] = &[
             ..Parts::default()
         },
         reaches: &[Target::Analytic],
-        fails: &["analytic/symmetry/order"],
         related: &["analytic/"],
     },
 ];

@@ -2,12 +2,14 @@
 
 use crate::cli::args::EvaluateArgs;
 use crate::cli::files::{self, StagedDirectory};
+use crate::cli::provenance::provenance;
 use crate::cli::study::Study;
 use crate::constellation::identity::UniqueTexts;
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Evaluator;
 use crate::exchange::constellation::Constellation;
 use crate::report::{outages_csv, records_csv};
+use crate::run::Provenance;
 use anyhow::Result;
 use std::collections::BTreeSet;
 use std::fs;
@@ -22,6 +24,7 @@ const LONGEST_NAME: usize = 80;
 /// The directory of `--series`, not yet in its place.
 pub(super) struct SeriesDirectory {
     staged: StagedDirectory,
+    provenance: Provenance,
     place: PathBuf,
     /// The folder of each constellation; for a single one the directory itself.
     folders: Vec<String>,
@@ -47,6 +50,7 @@ impl SeriesDirectory {
         };
         Ok(Some(Self {
             staged: StagedDirectory::new(&place)?,
+            provenance: provenance(vec![study.stamp()?]),
             place,
             folders,
         }))
@@ -90,7 +94,7 @@ impl SeriesDirectory {
 
     /// Puts the directory in its place.
     pub(super) fn commit(self) -> Result<()> {
-        self.staged.commit()
+        self.staged.commit(&self.provenance)
     }
 }
 

@@ -5,9 +5,11 @@ use super::{
     warn_of_space,
 };
 use crate::cli::args::{OptimizeArgs, OutputFormat};
+use crate::cli::provenance::provenance;
 use crate::cli::{Status, coincidence, files, output};
 use crate::evaluate::Evaluator;
 use crate::report::SeedsResult;
+use crate::run::PROVENANCE;
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -73,6 +75,7 @@ pub(super) fn run(args: &OptimizeArgs, count: u64) -> Result<Status> {
     for (name, text) in TABLE.iter().zip(&contents) {
         files::write_atomically(&out.join(name), text.as_bytes())?;
     }
+    files::write_provenance(&out, &provenance(vec![study.stamp()?]))?;
     output::result(&match args.format {
         OutputFormat::Text => format!(
             "{}\n{}",
@@ -112,7 +115,7 @@ fn require_seeds(directory: &Path) -> Result<()> {
             continue;
         }
         let name = name.to_string_lossy().into_owned();
-        if !name.starts_with(RUN) && !TABLE.contains(&name.as_str()) {
+        if !name.starts_with(RUN) && !TABLE.contains(&name.as_str()) && name != PROVENANCE {
             bail!(
                 "{} holds {name}, which is not the run of a seed; choose another --out, or replace what \
                  is in the way with --force",

@@ -1,5 +1,6 @@
 //! The directory of a search for the fewest satellites: the certificate grows in it, and the checkpoint says how far.
 
+use crate::cli::provenance::provenance;
 use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
 use crate::run::INPUTS;
@@ -83,7 +84,7 @@ impl SizeDirectory {
         files::write_all(staged.path(), &study.first_files(&identity)?)?;
         let heading = certificate_heading();
         files::write_atomically(&staged.path().join(CERTIFICATE_CSV), heading.as_bytes())?;
-        let lock = staged.commit_keeping(&[])?;
+        let lock = staged.commit_keeping(&[], &provenance(vec![study.stamp()?]))?;
         Ok(Self {
             certificate: appended(&path.join(CERTIFICATE_CSV))?,
             bytes: heading.len() as u64,

@@ -10,6 +10,10 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 const TICK: f64 = 3.0;
 const MINOR: f64 = 1.6;
 
+/// Height of a line of a name, and of a row with two, in heights of the text.
+const LINE: f64 = 1.0;
+const TWO_LINES: f64 = 1.95;
+
 /// Width of the frame and of the grid, points.
 const AXIS: f64 = 0.6;
 const FINE: f64 = 0.4;
@@ -212,6 +216,82 @@ fn segment(from: (f64, f64), to: (f64, f64)) -> Option<[(f64, f64); 2]> {
         _ => (from.0 + share * dx, from.1 + share * dy),
     };
     (enters <= leaves).then(|| [at(enters), at(leaves)])
+}
+
+/// A frame with the name of each of its rows on the left.
+pub(super) struct NamedRows {
+    pub(super) frame: PlotFrame,
+    /// The lines of each name.
+    names: Vec<Vec<String>>,
+}
+
+impl NamedRows {
+    /// Rows below `top`; names take at most a share of the width, and two lines where rows have the room.
+    pub(super) fn new<'n>(
+        area: &Area<'_>,
+        sheet: Sheet,
+        top: i32,
+        names: impl ExactSizeIterator<Item = &'n str>,
+        share: f64,
+    ) -> Self {
+        let (width, height) = area.dim_in_pixel();
+        let bottom = height as i32 - x_labels_height(sheet);
+        let row_height = (bottom - top) / i32::try_from(names.len().max(1)).unwrap_or(i32::MAX);
+        let most_lines = if row_height >= sheet.em(TWO_LINES) {
+            2
+        } else {
+            1
+        };
+        let most = (share * f64::from(width)) as i32;
+        let names: Vec<Vec<String>> = names
+            .map(|name| lines(name, sheet, most, most_lines))
+            .collect();
+        let widths = names
+            .iter()
+            .flatten()
+            .map(|line| sheet.text_width(line, 1.0));
+        let frame = PlotFrame {
+            left: widths.max().unwrap_or(0) + sheet.em(1.4),
+            right: width as i32 - sheet.em(1.2),
+            top,
+            bottom,
+        };
+        Self { frame, names }
+    }
+
+    /// The vertical place of a share of a row, from its top.
+    pub(super) fn y(&self, row: usize, share: f64) -> i32 {
+        let count = self.names.len().max(1) as f64;
+        self.frame.up(1.0 - (row as f64 + share) / count)
+    }
+
+    /// The name of a row.
+    pub(super) fn draw_name(&self, area: &Area<'_>, sheet: Sheet, row: usize) -> Drawn {
+        let side = Pos::new(HPos::Right, VPos::Center);
+        let lines = &self.names[row];
+        for (n, text) in lines.iter().enumerate() {
+            let below = n as f64 - 0.5 * (lines.len() as f64 - 1.0);
+            let y = self.y(row, 0.5) + (below * f64::from(sheet.em(LINE))).round() as i32;
+            let at = (self.frame.left - sheet.em(0.6), y);
+            area.draw(&Text::new(text.clone(), at, sheet.font().pos(side)))?;
+        }
+        Ok(())
+    }
+}
+
+/// A name in one line, or in two that are as even as its words allow; what is too long ends in an ellipsis.
+fn lines(name: &str, sheet: Sheet, most: i32, most_lines: usize) -> Vec<String> {
+    let width = |text: &str| sheet.text_width(text, 1.0);
+    let halves = name
+        .match_indices(' ')
+        .map(|(at, _)| (&name[..at], &name[at + 1..]));
+    let best = halves.min_by_key(|(one, other)| width(one).max(width(other)));
+    match best {
+        Some((one, other)) if most_lines > 1 && width(name) > most => [one, other]
+            .map(|line| sheet.fitted(line, 1.0, most))
+            .to_vec(),
+        _ => vec![sheet.fitted(name, 1.0, most)],
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Marks on rows along a logarithmic axis.
 
-use super::frame::{PlotFrame, x_labels_height};
+use super::frame::{NamedRows, x_labels_height};
 use super::heading::Heading;
 use super::marks::{self, Mark};
 use super::ruler::Ruler;
@@ -8,7 +8,6 @@ use super::sheet::{Sheet, line};
 use super::{Area, Drawn, GRID};
 use crate::report::figures::{Axis, AxisScale, RowChart};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Height of a row in heights of the text.
 const ROW: f64 = 2.0;
@@ -62,37 +61,19 @@ fn ruler(chart: &RowChart, most_ticks: usize) -> Ruler {
 pub(super) fn draw(area: &Area<'_>, chart: &RowChart, sheet: Sheet) -> Drawn {
     let heading = heading(chart);
     heading.draw(area, sheet)?;
-    let (width, height) = area.dim_in_pixel();
-    let most = (NAMES * f64::from(width)) as i32;
-    let names = chart
-        .rows
-        .iter()
-        .map(|(name, _)| sheet.fitted(name, 1.0, most));
-    let names: Vec<String> = names.collect();
-    let widest = names
-        .iter()
-        .map(|name| sheet.text_width(name, 1.0))
-        .max()
-        .unwrap_or(0);
-    let frame = PlotFrame {
-        left: widest + sheet.em(1.4),
-        right: width as i32 - sheet.em(1.2),
-        top: heading.height(sheet),
-        bottom: height as i32 - x_labels_height(sheet),
-    };
+    let names = chart.rows.iter().map(|(name, _)| name.as_str());
+    let rows = NamedRows::new(area, sheet, heading.height(sheet), names, NAMES);
+    let frame = &rows.frame;
     let ruler = ruler(
         chart,
         ((frame.right - frame.left) / sheet.em(4.0)).clamp(2, 12) as usize,
     );
     frame.draw_grid(area, &ruler, true)?;
-    let count = chart.rows.len().max(1) as f64;
-    let side = Pos::new(HPos::Right, VPos::Center);
-    for (n, ((_, sizes), name)) in chart.rows.iter().zip(names).enumerate() {
-        let y = frame.up(1.0 - (n as f64 + 0.5) / count);
+    for (n, (_, sizes)) in chart.rows.iter().enumerate() {
+        let y = rows.y(n, 0.5);
         let across = vec![(frame.left, y), (frame.right, y)];
         area.draw(&PathElement::new(across, line(GRID, 0.4)))?;
-        let at = (frame.left - sheet.em(0.6), y);
-        area.draw(&Text::new(name, at, sheet.font().pos(side)))?;
+        rows.draw_name(area, sheet, n)?;
         for (m, size) in sizes.iter().enumerate().filter(|(_, size)| **size > 0.0) {
             let place = (frame.across(ruler.share(*size)), y);
             marks::draw(area, place, mark(m), sheet)?;
