@@ -110,6 +110,7 @@ fn command(cli: Cli) -> anyhow::Result<Status> {
         Command::Reproduce(args) => commands::reproduce::run(&args),
         Command::Dop(args) => commands::dop::run(&args),
         Command::Orbit(args) => commands::orbit::run(&args),
+        Command::Separation(args) => commands::separation::run(&args),
         Command::Export(args) => commands::export::run(&args),
         Command::Lint(args) => commands::lint::run(&args),
         Command::Validate(args) => commands::validate::run(&args),

@@ -8,6 +8,7 @@ pub mod j2;
 pub mod kepler;
 pub mod osculating;
 pub mod relations;
+pub mod separation;
 pub mod sgp4;
 mod spread;
 

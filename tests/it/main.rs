@@ -25,6 +25,7 @@ mod names;
 mod readers;
 mod reference;
 mod regions;
+mod relative;
 mod runs;
 mod scenes;
 mod series;
