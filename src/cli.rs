@@ -113,6 +113,7 @@ fn command(cli: Cli) -> anyhow::Result<Status> {
         Command::Reproduce(args) => commands::reproduce::run(&args),
         Command::Dop(args) => commands::dop::run(&args),
         Command::Orbit(args) => commands::orbit::run(&args),
+        Command::Separation(args) => commands::separation::run(&args),
         Command::Export(args) => commands::export::run(&args),
         Command::Diff(args) => commands::diff::run(&args),
         Command::Lint(args) => commands::lint::run(&args),

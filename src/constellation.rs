@@ -5,6 +5,8 @@ mod design;
 pub mod gnss;
 pub mod identity;
 mod notation;
+pub mod relative_nodes;
+pub mod separation;
 mod shell;
 
 pub use coverage_radius::{

@@ -7,6 +7,8 @@ pub mod ground_track;
 pub mod j2;
 pub mod kepler;
 pub mod osculating;
+pub mod relations;
+pub mod separation;
 pub mod sgp4;
 mod spread;
 

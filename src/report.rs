@@ -24,8 +24,10 @@ mod orbits;
 pub mod page;
 pub(crate) mod phases;
 pub mod profile;
+mod relative_nodes;
 mod results;
 mod seeds;
+mod separations;
 pub(crate) mod shown;
 mod skies;
 mod studies;
@@ -54,9 +56,15 @@ pub use expected::{ExpectedService, SpareService};
 pub use from_evaluations::{EvaluatedFront, EvaluationSource, NotEvaluated};
 pub use labels::quantity_label;
 pub use orbits::{OrbitResult, RepeatResult, orbits_csv, orbits_text};
+#[cfg(feature = "cli")]
+pub(crate) use phases::in_order;
 pub use phases::{PhaseRange, PhaseSpread};
+pub use relative_nodes::{MetricRanges, NodeSpread, RelativeNodeResult, RelativeNodes};
 pub use results::NoMember;
 pub use seeds::{JointMember, SeedRun, SeedsResult, Spread};
+pub use separations::{
+    ApproachResult, DesignSeparation, SeparationResult, separations_csv, separations_text,
+};
 pub use skies::{SkyClockResult, SkyResult, skies_csv, skies_text};
 pub use studies::{
     StatementRecord, StudiesResult, StudyResult, StudyStamp, statements_csv, studies_markdown,

@@ -16,7 +16,7 @@ pub use constraint::{Constraint, ConstraintError, Relation};
 pub use counted::CountedSatellites;
 pub use quantity::{LaunchCost, Quantity};
 pub use recording::{RecordedEvaluation, RecordingProblem};
-pub use shell_space::{ShellSpace, SweepSteps};
+pub use shell_space::{IntervalOr, ShellSpace, SweepSteps};
 pub use space::DesignSpace;
 pub use spares::SparedPlanes;
 

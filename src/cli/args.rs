@@ -9,6 +9,7 @@ mod products;
 mod run_view;
 mod satellites;
 mod scenario;
+mod separation;
 mod size;
 mod sky;
 mod sweep;
@@ -21,6 +22,7 @@ pub(crate) use optimize::OptimizeArgs;
 pub(crate) use run_view::{LookArgs, PlotArgs, ReportArgs, ViewArgs};
 pub(crate) use satellites::SatelliteArgs;
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
+pub(crate) use separation::SeparationArgs;
 pub(crate) use size::SizeArgs;
 pub(crate) use sky::{DopArgs, OrbitArgs};
 pub(crate) use sweep::SweepArgs;
@@ -150,6 +152,15 @@ pub(crate) enum Command {
     /// Example: navwalker orbit delta:97.4018:1/1/0@500
     #[command(verbatim_doc_comment)]
     Orbit(OrbitArgs),
+
+    /// Show how close any two satellites of a design come to each other, which they are, and where and when.
+    ///
+    /// By mean elements under secular J2. Within a shell, satellites keep their places, and the least distance is a
+    /// closed form; between shells of other rates it is the difference in altitude, sooner or later.
+    ///
+    /// Example: navwalker separation delta:55:182/13/1@925 --all-phasings
+    #[command(verbatim_doc_comment)]
+    Separation(SeparationArgs),
 
     /// Reproduce published numbers: those of the paper that this program implements, or of other studies.
     ///

@@ -12,6 +12,7 @@ pub(crate) mod plot;
 pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod scenario;
+pub(crate) mod separation;
 pub(crate) mod size;
 pub(crate) mod sweep;
 pub(crate) mod validate;

@@ -1,7 +1,9 @@
-//! Walker's notation with pattern and altitude, `delta:55:182/13/1@925[,e=0.01,w=270]`; `+` joins shells.
+//! Walker's notation with pattern and altitude, `delta:55:182/13/1@925[,e=0.01,w=270]`; `+` joins shells. In place of an
+//! altitude `repeat:15/1`, and of an inclination `sun-synchronous`, stand for the numbers that they lead to.
 
 use super::{Design, DesignError, Orientation, Shell, ShellParameters, shell_letters};
 use crate::keyword::{UnknownKeyword, nearest};
+use crate::orbit::relations::{NumberOr, RepeatRatio, inclination_and_altitude};
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -135,8 +137,20 @@ impl FromStr for Shell {
         let satellites = number("satellites T", t)?;
         let planes = number("planes P", p)?;
         let phasing = number("phasing F", f)?;
-        let inclination_deg = decimal("inclination", inclination)?;
-        let altitude_km = decimal("altitude", altitude)?;
+        let options = Options::parse(options)?;
+        let (inclination_deg, altitude_km) = inclination_and_altitude(
+            match inclination.parse() {
+                Ok(sun) => NumberOr::Following(sun),
+                Err(()) => NumberOr::Number(decimal("inclination", inclination)?),
+            },
+            if altitude.starts_with(RepeatRatio::PREFIX) {
+                NumberOr::Following(altitude.parse().map_err(DesignError::from)?)
+            } else {
+                NumberOr::Number(decimal("altitude", altitude)?)
+            },
+            options.eccentricity.unwrap_or(0.0),
+        )
+        .map_err(DesignError::from)?;
         let shell = Self::new(ShellParameters {
             pattern,
             planes,
@@ -145,7 +159,7 @@ impl FromStr for Shell {
             inclination_deg,
             altitude_km,
         })?;
-        Options::parse(options)?.apply(shell)
+        options.apply(shell)
     }
 }
 

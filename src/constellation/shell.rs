@@ -3,6 +3,7 @@
 use super::{Design, Satellite, Slot};
 use crate::earth::RADIUS_KM;
 use crate::keyword::keywords;
+use crate::orbit::relations::RelationError;
 use crate::orbit::{ElementsError, MeanElements};
 use crate::units::{wrap_360, wrap_two_pi};
 use thiserror::Error;
@@ -80,6 +81,9 @@ pub enum DesignError {
     /// Altitude not a positive number below [`Shell::MAX_ALTITUDE_KM`].
     #[error("altitude {0} km is outside 0 to {max} km", max = Shell::MAX_ALTITUDE_KM)]
     Altitude(f64),
+    /// No orbit has the altitude or the inclination that is to follow.
+    #[error(transparent)]
+    Relation(#[from] RelationError),
     /// An orbit that cannot be propagated.
     #[error(transparent)]
     Orbit(#[from] ElementsError),

@@ -86,7 +86,7 @@ pub fn track_repeats(elements: &MeanElements, most_days: u32) -> Vec<TrackRepeat
 }
 
 /// The altitude at which an orbit makes so many revolutions in a nodal day.
-fn repeating_altitude_km(elements: &MeanElements, per_day: f64) -> Option<f64> {
+pub(super) fn repeating_altitude_km(elements: &MeanElements, per_day: f64) -> Option<f64> {
     let mut orbit = *elements;
     for _ in 0..STEPS {
         // Revolutions go with the power -3/2 of the semi-major axis, but for J2.

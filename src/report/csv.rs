@@ -1,7 +1,7 @@
 //! Results as CSV, with the unit of each column in its header.
 
 use super::evaluated::ConstellationEntry;
-use super::phases::{PhaseRange, PhaseSpread};
+use super::phases::{PhaseRange, PhaseSpread, in_order};
 use crate::evaluate::{DopStatistics, Series};
 use crate::formats::csv::write_records;
 use crate::run::DesignSummary;
@@ -25,7 +25,7 @@ pub struct ConstellationColumns {
     quantities: Vec<Quantity>,
     /// The dilutions of precision, if there are any, as they are named in columns.
     dops: Vec<String>,
-    /// The metrics whose range over phases of the GNSS is given.
+    /// The metrics whose range over phases of the GNSS or over relative nodes is given, as columns begin.
     phases: Vec<String>,
     /// The constraints, as they are written.
     constraints: Vec<String>,
@@ -79,7 +79,7 @@ impl ConstellationColumns {
             names.extend(fields::<Summary>().iter().map(|one| format!("{dop}_{one}")));
         }
         for name in &self.phases {
-            names.extend(["min", "mean", "max"].map(|part| format!("{name}_phases_{part}")));
+            names.extend(["min", "mean", "max"].map(|part| format!("{name}_{part}")));
         }
         names.extend(self.constraints.iter().cloned());
         line(&names)
@@ -113,7 +113,10 @@ impl ConstellationColumns {
                 None => vec![String::new(); fields::<Summary>().len()],
             });
         }
-        for (_, range) in ranges(entry) {
+        let known = ranges(entry);
+        for column in &self.phases {
+            let found = known.iter().find(|(name, _)| name == column);
+            let range = found.and_then(|(_, range)| *range);
             let parts = [
                 range.map(|of| of.min),
                 range.map(|of| of.mean),
@@ -127,11 +130,16 @@ impl ConstellationColumns {
     }
 }
 
-/// The range of each metric over the phases of the GNSS.
+/// The range of each metric over the phases of the GNSS, and over relative nodes.
 fn ranges(entry: &ConstellationEntry) -> Vec<(String, Option<PhaseRange>)> {
     let phases = entry.evaluated.gnss_phases.iter();
-    let rows = phases.flat_map(PhaseSpread::rows);
-    rows.map(|(name, range)| (name.to_owned(), range)).collect()
+    let phases = phases.flat_map(PhaseSpread::rows);
+    let phases = phases.map(|(name, range)| (format!("{name}_phases"), range));
+    let nodes = entry.evaluated.relative_nodes.iter();
+    let nodes = nodes.flat_map(|of| &of.spread);
+    let nodes = nodes.flat_map(|of| in_order(&of.spread.metrics));
+    let nodes = nodes.map(|(name, range)| (format!("{name}_nodes"), range));
+    phases.chain(nodes).collect()
 }
 
 /// A name as a column.

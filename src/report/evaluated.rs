@@ -4,6 +4,8 @@ use super::PhaseSpread;
 use super::deployment::DeploymentSummary;
 use super::expected::ExpectedService;
 use super::failures::FailureSummary;
+use super::relative_nodes::RelativeNodes;
+use super::separations::SeparationResult;
 use crate::evaluate::{DopStatistics, Metrics, ViewHistograms};
 use crate::exchange::constellation::{Constellation, FileSatellites, GNSS_ONLY};
 use crate::run::{DesignSummary, ScenarioStamp, VERSION};
@@ -33,6 +35,12 @@ pub struct Assessment {
     /// The metrics as expected over failures, if the scenario says how reliable the satellites are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected: Option<ExpectedService>,
+    /// How close the satellites of its shells come to each other.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub separation: Vec<SeparationResult>,
+    /// How the nodes of its shells turn against each other, for several shells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative_nodes: Option<RelativeNodes>,
     /// The constraints of the scenario, and whether they are met.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<ConstraintCheck>,
@@ -100,6 +108,10 @@ impl Assessment {
             failures: None,
             phases: None,
             expected: None,
+            separation: satellites
+                .shells
+                .map_or_else(Vec::new, SeparationResult::of_design),
+            relative_nodes: satellites.shells.and_then(RelativeNodes::of),
             constraints,
             quantities,
         }

@@ -30,6 +30,7 @@ pub fn quantity_label(name: &str) -> String {
         Quantity::Error953dM => "95 % position error (m)",
         Quantity::Error95HM => "95 % horizontal error (m)",
         Quantity::Error95VM => "95 % height error (m)",
+        Quantity::LeastSeparationKm => "least separation (km)",
         Quantity::LaunchCost => "launch cost (satellites)",
         Quantity::LeastVisible => "least number of visible LEO satellites",
         Quantity::MeanTotalVisible => "mean visible satellites, LEO and GNSS",

@@ -57,16 +57,21 @@ impl PhaseSpread {
     /// Name, minimum, mean and maximum of each metric, in the order of the metrics.
     #[must_use]
     pub fn rows(&self) -> Vec<(&str, Option<PhaseRange>)> {
-        let mut rows: Vec<_> = self
-            .metrics
-            .iter()
-            .map(|(name, range)| (name.as_str(), *range))
-            .collect();
-        let columns = metric_columns();
-        let place = |name: &str| columns.iter().position(|one| *one == name);
-        rows.sort_by_key(|(name, _)| place(name).unwrap_or(columns.len()));
-        rows
+        in_order(&self.metrics)
     }
+}
+
+/// Name and range of each metric, in the order of the metrics.
+#[must_use]
+pub(crate) fn in_order(
+    metrics: &BTreeMap<String, Option<PhaseRange>>,
+) -> Vec<(&str, Option<PhaseRange>)> {
+    let rows = metrics.iter().map(|(name, range)| (name.as_str(), *range));
+    let mut rows: Vec<_> = rows.collect();
+    let columns = metric_columns();
+    let place = |name: &str| columns.iter().position(|one| *one == name);
+    rows.sort_by_key(|(name, _)| place(name).unwrap_or(columns.len()));
+    rows
 }
 
 /// The numbers of the metrics by name; the level of the tail and whether an outage is cut are none of them.

@@ -7,6 +7,7 @@ use super::source::{Place, Source, blanked};
 use crate::constellation::NotationError;
 use crate::ground::UnknownCountry;
 use crate::keyword::UnknownKeyword;
+use crate::orbit::relations::RelationError;
 use crate::search::ConstraintError;
 
 /// Characters of an unknown key repeated in a message.
@@ -237,6 +238,12 @@ pub enum Fault {
         altitude_km: f64,
         /// Height of the perigee over the Earth's radius, km.
         perigee_km: f64,
+    },
+    /// An altitude or an inclination that follows, and that no orbit has.
+    #[error(transparent)]
+    NoSuchOrbit {
+        /// Why not.
+        source: RelationError,
     },
     /// A phasing that no design of the search can have.
     #[error("the lowest phasing is {lowest}, but with at most {planes} planes it is at most {}", .planes.saturating_sub(1))]

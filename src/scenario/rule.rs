@@ -2,6 +2,7 @@
 
 mod constellations;
 mod country;
+mod following;
 mod list;
 mod number;
 mod table;
@@ -9,6 +10,7 @@ mod text;
 
 pub(super) use constellations::{Constellations, Notation, parts_without_paths};
 pub(super) use country::Countries;
+pub(super) use following::FollowingOr;
 pub(super) use list::{
     Constraints, ListOf, Numbers, OneOf, OneOrMore, Skyline, SomeOf, TextOrTexts, Texts,
 };

@@ -1,6 +1,7 @@
 //! The quantities that a search can optimise or bound, by name.
 
 use super::counted::{CountedSatellites, NewSatellites};
+use crate::constellation::separation::least_separation_km;
 use crate::constellation::{Design, Shell};
 use crate::evaluate::{Gain, Metrics};
 use crate::keyword::{Keyword, keywords};
@@ -114,6 +115,8 @@ keywords! {
         N1Availability = "n1-availability",
         /// Availability as expected over failures of the satellites by `[reliability]`; maximised.
         ExpectedAvailability = "expected-availability",
+        /// Least distance of any two satellites over all time by mean elements, km; maximised.
+        LeastSeparationKm = "least-separation-km",
         /// Cost of launching the satellites that are not fixed, in the unit of its parameters; minimised.
         LaunchCost = "launch-cost",
         /// Gain over the GNSS alone in mean PDOP; dimensionless; maximised.
@@ -184,6 +187,7 @@ impl Quantity {
                     | Self::MeanTotalVisible
                     | Self::N1Availability
                     | Self::ExpectedAvailability
+                    | Self::LeastSeparationKm
             )
     }
 
@@ -314,10 +318,13 @@ impl Quantity {
         if self.is_maximised() { -value } else { value }
     }
 
-    /// Whether satellites from files that are not fixed have none: their planes are not known.
+    /// Whether satellites from files have none, those that are fixed apart: their planes are not known.
     #[must_use]
     pub fn needs_planes(self) -> bool {
-        matches!(self, Self::Planes | Self::NewPlanes | Self::LaunchCost)
+        matches!(
+            self,
+            Self::Planes | Self::NewPlanes | Self::LaunchCost | Self::LeastSeparationKm
+        )
     }
 
     /// The value for the satellites of a constellation, of which some are new; `None` if there is none, as for PDOP
@@ -408,6 +415,10 @@ impl Quantity {
                 Some((of_shells + new.from_files) as f64)
             }
             Self::NewPlanes => of_planes(new_sum(Shell::planes)),
+            Self::LeastSeparationKm => {
+                let of_shells = satellites.shells.filter(|_| satellites.from_files == 0);
+                least_separation_km(of_shells?)
+            }
             // 0 and not -0 for no shell.
             Self::LaunchCost => has_planes.then(|| {
                 let costs = new.shells.iter().map(|shell| cost.of_shell(shell));

@@ -2,6 +2,9 @@
 
 use crate::constellation::{DesignError, Orientation, Pattern, Shell, ShellParameters};
 use crate::optimize::VariableKind;
+use crate::orbit::relations::{
+    NumberOr, RelationError, RepeatRatio, SunSynchronous, inclination_and_altitude,
+};
 use crate::units::round_decimal;
 
 /// Decimals of a degree to which a search resolves angles: the last digit of a TLE.
@@ -16,9 +19,40 @@ const ECCENTRICITY_DECIMALS: usize = 6;
 /// Positions of the variables that every shell has.
 pub(super) const PLANES: usize = 0;
 pub(super) const PER_PLANE: usize = 1;
-pub(super) const INCLINATION: usize = 2;
-pub(super) const ALTITUDE: usize = 3;
-pub(super) const PHASING: usize = 4;
+
+/// What a search varies, or what follows from the other variables.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum IntervalOr<F> {
+    /// The limits.
+    Between([f64; 2]),
+    /// What it follows from.
+    Following(F),
+}
+
+impl<F> From<[f64; 2]> for IntervalOr<F> {
+    fn from(limits: [f64; 2]) -> Self {
+        Self::Between(limits)
+    }
+}
+
+impl<F: Copy> IntervalOr<F> {
+    /// The limits, if it has any.
+    #[must_use]
+    pub fn limits(self) -> Option<[f64; 2]> {
+        match self {
+            Self::Between(limits) => Some(limits),
+            Self::Following(_) => None,
+        }
+    }
+
+    /// At a value of the variable, if it is one.
+    fn at(self, value: Option<f64>) -> NumberOr<F> {
+        match self {
+            Self::Between([low, _]) => NumberOr::Number(value.unwrap_or(low)),
+            Self::Following(of) => NumberOr::Following(of),
+        }
+    }
+}
 
 /// The intervals of a shell, each with its limits, and its steps in a sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,9 +64,9 @@ pub struct ShellSpace {
     /// Satellites in a plane; the shell may be empty if they start at 0.
     pub satellites_per_plane: [u32; 2],
     /// Inclination, degrees.
-    pub inclination_deg: [f64; 2],
+    pub inclination_deg: IntervalOr<SunSynchronous>,
     /// Altitude over the equatorial radius, km.
-    pub altitude_km: [f64; 2],
+    pub altitude_km: IntervalOr<RepeatRatio>,
     /// Phasing F, or `N_c` of a lattice; capped at P - 1.
     pub phasing: [u32; 2],
     /// Eccentricity; a variable if the limits differ.
@@ -84,7 +118,7 @@ struct OptionalVariable {
 }
 
 impl ShellSpace {
-    /// The variables (P, S, i, h, F[, e][, ω][, Ω][, u][, node step][, pattern]) with their names; those in brackets
+    /// The variables (P, S[, i][, h], F[, e][, ω][, Ω][, u][, node step][, pattern]) with their names; those in brackets
     /// only if they vary, so that simpler searches draw the same random numbers with and without them.
     pub(super) fn variables(&self) -> impl Iterator<Item = (&'static str, VariableKind)> + use<> {
         let integer = |[lo, hi]: [u32; 2]| VariableKind::Integer {
@@ -95,10 +129,12 @@ impl ShellSpace {
         let mut variables = vec![
             ("planes", integer(self.planes)),
             ("satellites-per-plane", integer(self.satellites_per_plane)),
-            ("inclination-deg", real(self.inclination_deg)),
-            ("altitude-km", real(self.altitude_km)),
-            ("phasing", integer(self.cut_phasing())),
         ];
+        let inclination = self.inclination_deg.limits();
+        variables.extend(inclination.map(|of| ("inclination-deg", real(of))));
+        let altitude = self.altitude_km.limits();
+        variables.extend(altitude.map(|of| ("altitude-km", real(of))));
+        variables.push(("phasing", integer(self.cut_phasing())));
         let varied = self.varied().into_iter();
         variables.extend(varied.map(|one| (one.name, real(one.limits))));
         if self.pattern.len() > 1 {
@@ -115,7 +151,10 @@ impl ShellSpace {
             altitude_step_km,
             ..
         } = self.steps;
-        let mut steps = vec![1.0, 1.0, inclination_step_deg, altitude_step_km, 1.0];
+        let mut steps = vec![1.0, 1.0];
+        steps.extend(self.inclination_deg.limits().map(|_| inclination_step_deg));
+        steps.extend(self.altitude_km.limits().map(|_| altitude_step_km));
+        steps.push(1.0);
         steps.extend(self.varied().iter().map(|one| one.step));
         if self.pattern.len() > 1 {
             steps.push(1.0);
@@ -171,6 +210,12 @@ impl ShellSpace {
         all.into_iter().flatten().collect()
     }
 
+    /// The place of the phasing, after an inclination and an altitude that are variables.
+    fn phasing_place(&self) -> usize {
+        let orbit = [self.inclination_deg.limits(), self.altitude_km.limits()];
+        PER_PLANE + 1 + orbit.iter().flatten().count()
+    }
+
     /// The phasings that can occur: the limits, capped at P - 1 for the fewest and the most planes.
     fn cut_phasing(&self) -> [u32; 2] {
         let cut = |n: usize| self.phasing[n].min(self.planes[n].saturating_sub(1));
@@ -181,13 +226,19 @@ impl ShellSpace {
     /// their resolution, so that designs have few digits and equal designs are equal vectors.
     pub(super) fn repair(&self, genome: &mut [f64]) {
         let lowest = f64::from(self.phasing[0]);
-        genome[PHASING] = genome[PHASING].max(lowest).min(genome[PLANES] - 1.0);
-        let [south, north] = self.inclination_deg;
-        genome[INCLINATION] =
-            round_decimal(genome[INCLINATION], ANGLE_DECIMALS).clamp(south, north);
-        let [low, high] = self.altitude_km;
-        genome[ALTITUDE] = round_decimal(genome[ALTITUDE], ALTITUDE_DECIMALS).clamp(low, high);
-        for (value, one) in genome[PHASING + 1..].iter_mut().zip(self.varied()) {
+        let phasing = self.phasing_place();
+        genome[phasing] = genome[phasing].max(lowest).min(genome[PLANES] - 1.0);
+        let orbit = [
+            (self.inclination_deg.limits(), ANGLE_DECIMALS),
+            (self.altitude_km.limits(), ALTITUDE_DECIMALS),
+        ];
+        let orbit = orbit
+            .iter()
+            .filter_map(|(limits, decimals)| Some(((*limits)?, *decimals)));
+        for (value, ([low, high], decimals)) in genome[PER_PLANE + 1..].iter_mut().zip(orbit) {
+            *value = round_decimal(*value, decimals).clamp(low, high);
+        }
+        for (value, one) in genome[phasing + 1..].iter_mut().zip(self.varied()) {
             let [low, high] = one.limits;
             *value = round_decimal(*value, one.decimals).clamp(low, high);
         }
@@ -208,7 +259,11 @@ impl ShellSpace {
             return Ok(None);
         }
         let count = |n: usize| genome[n] as usize;
-        let mut further = genome[PHASING + 1..].iter().copied();
+        let phasing = self.phasing_place();
+        let mut orbit = genome[PER_PLANE + 1..phasing].iter().copied();
+        let inclination_deg = self.inclination_deg.limits().and_then(|_| orbit.next());
+        let altitude_km = self.altitude_km.limits().and_then(|_| orbit.next());
+        let mut further = genome[phasing + 1..].iter().copied();
         let mut value = |limits: [f64; 2]| {
             let varied = if varies(limits) { further.next() } else { None };
             varied.unwrap_or(limits[0])
@@ -222,16 +277,30 @@ impl ShellSpace {
         };
         let choice = further.next().unwrap_or(0.0) as usize;
         let pattern = self.pattern.get(choice).or(self.pattern.first());
+        let (inclination_deg, altitude_km) =
+            self.orbit(inclination_deg, altitude_km, eccentricity)?;
         let shell = Shell::new(ShellParameters {
             pattern: pattern.copied().ok_or(DesignError::NoShell)?,
             planes: count(PLANES),
             satellites_per_plane: count(PER_PLANE),
-            phasing: count(PHASING),
-            inclination_deg: genome[INCLINATION],
-            altitude_km: genome[ALTITUDE],
+            phasing: count(phasing),
+            inclination_deg,
+            altitude_km,
         })?;
         let shell = shell.with_ellipse(eccentricity, arg_perigee_deg)?;
         Ok(Some(shell.with_orientation(orientation)?))
+    }
+
+    /// Inclination (degrees) and altitude (km) at values of those that are variables.
+    pub(crate) fn orbit(
+        &self,
+        inclination_deg: Option<f64>,
+        altitude_km: Option<f64>,
+        eccentricity: f64,
+    ) -> Result<(f64, f64), RelationError> {
+        let inclination = self.inclination_deg.at(inclination_deg);
+        let altitude = self.altitude_km.at(altitude_km);
+        inclination_and_altitude(inclination, altitude, eccentricity)
     }
 
     /// Whether a variable has no effect, since the shell is empty without it.
@@ -267,7 +336,8 @@ impl ShellSpace {
     #[must_use]
     pub fn distinct_points(&self) -> f64 {
         let others = self.variables().zip(self.steps()).enumerate();
-        let others = others.filter(|(n, _)| ![PLANES, PER_PLANE, PHASING].contains(n));
+        let phasing = self.phasing_place();
+        let others = others.filter(|(n, _)| ![PLANES, PER_PLANE, phasing].contains(n));
         let others: f64 = others.map(|(_, (of, step))| steps_of(of.1, step)).product();
         let [fewest, most] = self.planes;
         let phasings = |planes: u32| {

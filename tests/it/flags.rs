@@ -281,6 +281,13 @@ const ROWS: &[Row] = &[
         "--gnss-phases 2",
         Stdout,
     ),
+    Row(
+        "evaluate",
+        "relative-nodes",
+        "--design delta:55:6/3/1@925+star:90:4/2/1@1100 SMALL",
+        "--relative-nodes 2",
+        Stdout,
+    ),
     Row("evaluate", "series", "DESIGN SMALL", "--series out", Out),
     Row(
         "evaluate",
@@ -331,6 +338,27 @@ const ROWS: &[Row] = &[
     Row("dop", "format", "sky.csv", "--format json", Stdout),
     Row(
         "orbit",
+        "format",
+        "delta:55:6/3/1@925",
+        "--format json",
+        Stdout,
+    ),
+    Row(
+        "separation",
+        "all-phasings",
+        "delta:55:6/3/1@925",
+        "--all-phasings",
+        Stdout,
+    ),
+    Row(
+        "separation",
+        "duration-h",
+        "delta:55:6/3/1@925+star:90:6/3/1@1000",
+        "--duration-h 2",
+        Stdout,
+    ),
+    Row(
+        "separation",
         "format",
         "delta:55:6/3/1@925",
         "--format json",

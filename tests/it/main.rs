@@ -26,6 +26,7 @@ mod provenance;
 mod readers;
 mod reference;
 mod regions;
+mod relative;
 mod runs;
 mod scenes;
 mod series;

@@ -18,7 +18,7 @@ pub(crate) struct EvaluateArgs {
     /// Blank lines and lines that begin with `#` are skipped. Results are printed in the order of the list as they
     /// come. A line that cannot be evaluated is named on stderr and left out, and the exit status is 1; it is 2 if
     /// no line can be. There are no warnings about satellites in one place or on collision course.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["series", "out", "gnss_phases"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["series", "out", "gnss_phases", "relative_nodes"])]
     pub(crate) designs: Option<PathBuf>,
 
     /// Take these satellites out of service throughout: satellites (NW-P01-S03), planes (NW-P03) or shells (NW-A) of the
@@ -36,6 +36,14 @@ pub(crate) struct EvaluateArgs {
     /// A nominal constellation begins at an arbitrary place; the metrics of a scenario are those of one phase.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1000))]
     pub(crate) gnss_phases: Option<u32>,
+
+    /// Evaluate designs of several shells at N relative nodes, equally spaced in the time in which their shells turn by 360°
+    /// against each other, and add the minimum, mean and maximum of each metric.
+    ///
+    /// Shells of other inclination or altitude drift apart, so that the metrics of a day are those of one relative node. The
+    /// nodes of the first shell, all phases and the Earth stay.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1000))]
+    pub(crate) relative_nodes: Option<u32>,
 
     /// Add what the failure of any K LEO satellites does (1 to 3): the mean, the worst and without which satellites.
     ///

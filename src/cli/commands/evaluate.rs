@@ -6,6 +6,7 @@ pub(super) mod failures;
 mod given_run;
 mod phases;
 mod print;
+mod relative_nodes;
 mod series;
 mod single;
 mod spares;
@@ -28,6 +29,7 @@ use designs::DesignList;
 use given_run::GivenRun;
 use phases::GnssPhases;
 use print::Printer;
+use relative_nodes::RelativeNodeStudy;
 use series::SeriesDirectory;
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
@@ -42,6 +44,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let evaluator = study.evaluator()?;
     limits::check_memory_of_tables(evaluator.setup(), args.dops, series.is_some())?;
     let phases = GnssPhases::new(args.gnss_phases, evaluator.setup())?;
+    let nodes = RelativeNodeStudy::new(args.relative_nodes, &given)?;
     let deployment = DeploymentTable::read(args.phases.as_deref())?;
     let fixed = study.fixed()?;
     let goals = study.goals(fixed.as_ref());
@@ -79,6 +82,9 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     }
     if let Some(phases) = &phases {
         phases.add(&mut work, &mut entries, &ephemerides)?;
+    }
+    if let Some(nodes) = &nodes {
+        nodes.add(&work, &mut entries)?;
     }
     let run = match run {
         Some(run) => Some((run.result(&work, &entries)?, run)),

@@ -102,10 +102,18 @@ fn bounded(shell: &ShellSpace) -> Vec<BoundedVariable> {
             whole(shell.satellites_per_plane),
             |d| Some(d.satellites_per_plane? as f64),
         ),
-        variable("inclination-deg", "°", shell.inclination_deg, |d| {
-            d.inclination_deg
-        }),
-        variable("altitude-km", " km", shell.altitude_km, |d| d.altitude_km),
+        variable(
+            "inclination-deg",
+            "°",
+            absent(shell.inclination_deg.limits()),
+            |d| d.inclination_deg,
+        ),
+        variable(
+            "altitude-km",
+            " km",
+            absent(shell.altitude_km.limits()),
+            |d| d.altitude_km,
+        ),
         variable("phasing", "", open_phasing(shell), |d| {
             Some(d.phasing? as f64)
         }),
@@ -251,7 +259,7 @@ mod tests {
             ..shell()
         };
         let polar = ShellSpace {
-            inclination_deg: [80.0, 90.0],
+            inclination_deg: [80.0, 90.0].into(),
             satellites_per_plane: [0, 15],
             ..shell()
         };

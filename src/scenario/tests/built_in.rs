@@ -66,7 +66,7 @@ fn an_empty_file_has_the_documented_search() {
     );
     assert_eq!(
         (designs.inclination_deg, designs.altitude_km),
-        ([40.0, 60.0], [400.0, 1000.0])
+        ([40.0, 60.0].into(), [400.0, 1000.0].into())
     );
     assert_eq!(designs.phasing, [1, 1]);
     assert_eq!(

@@ -49,7 +49,7 @@ fn searches_are_bounded() {
             .shells
             .as_slice()[0]
             .altitude_km,
-        [925.0, 925.0]
+        [925.0, 925.0].into()
     );
     for key in ["inclination-step-deg", "altitude-step-km"] {
         refuses(
@@ -344,4 +344,36 @@ fn words_are_known() {
         "\"walker\"",
         "(choices: delta, star, lattice)",
     );
+}
+
+/// What altitude and inclination may follow from, read, written and resolved.
+#[test]
+fn altitude_and_inclination_may_follow() {
+    let range = "expected \"repeat:REVOLUTIONS/DAYS\" such as \"repeat:15/1\", or [low, high]";
+    for text in ["repeat:15", "repeat:0/1", "15/1"] {
+        let line = format!("altitude-km = \"{text}\"");
+        refuses("search", &line, "altitude-km", range);
+    }
+    let range = "expected \"sun-synchronous\", or [low, high]";
+    refuses(
+        "search",
+        "inclination-deg = \"sunsync\"",
+        "inclination-deg",
+        range,
+    );
+    let below = "repeat:18/1 needs an orbit whose perigee is below the ground";
+    refuses(
+        "search",
+        "altitude-km = \"repeat:18/1\"",
+        "altitude-km",
+        below,
+    );
+    let none = "no inclination is sun-synchronous at an altitude of 6600 km";
+    let high = "altitude-km = [6500, 6600]\ninclination-deg = \"sun-synchronous\"";
+    refuses("search", high, "altitude-km", none);
+    let both = "inclination-deg = \"sun-synchronous\"\naltitude-km = \"repeat:233/16\"";
+    let scenario = accepts("search", both);
+    let space = &scenario.search.shells.as_slice()[0];
+    let (inclination_deg, altitude_km) = space.orbit(None, None, 0.0).unwrap();
+    assert!((inclination_deg - 98.2).abs() < 0.1 && (altitude_km - 705.0).abs() < 10.0);
 }

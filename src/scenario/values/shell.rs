@@ -5,8 +5,8 @@ use crate::scenario::Pattern;
 use crate::scenario::keys::{KeyPath, key, section};
 use crate::scenario::problem::Fault;
 use crate::scenario::reader::Reader;
-use crate::scenario::rule::{Integer, Interval, Number, OneOrMore, Optional};
-use crate::search::{ShellSpace, SweepSteps};
+use crate::scenario::rule::{FollowingOr, Integer, Interval, Number, OneOrMore, Optional};
+use crate::search::{IntervalOr, ShellSpace, SweepSteps};
 
 /// Maximum number of satellites of a design.
 pub(super) const MAX_SATELLITES: u32 = 100_000;
@@ -22,11 +22,13 @@ section! {
         planes = integers(1, MAX_SATELLITES), default [11, 15];
         /// Number of satellites per plane; a shell may be empty if they start at 0, unless all may be and none is fixed.
         satellites_per_plane = integers(0, MAX_SATELLITES), default [11, 15];
-        /// Inclination.
-        inclination_deg = numbers(Number::from_to(0.0, 180.0)), unit "deg", default [40.0, 60.0];
-        /// Altitude over the equatorial radius.
-        altitude_km = numbers(Number::above_to(0.0, 100_000.0)), unit "km",
-            default [400.0, 1000.0];
+        /// Inclination; `"sun-synchronous"` for the one at which the node follows the Sun.
+        inclination_deg = FollowingOr::sun_synchronous(numbers(Number::from_to(0.0, 180.0))), unit "deg",
+            default IntervalOr::Between([40.0, 60.0]);
+        /// Altitude over the equatorial radius; `"repeat:15/1"` for the one at which the ground track repeats after 15
+        /// revolutions in 1 nodal day.
+        altitude_km = FollowingOr::repeat(numbers(Number::above_to(0.0, 100_000.0))), unit "km",
+            default IntervalOr::Between([400.0, 1000.0]);
         /// Walker's F, or N_c of a lattice, capped at the number of planes minus one.
         phasing = integers(0, MAX_SATELLITES), default [1, 1];
         /// Eccentricity; a variable of the search if the limits differ.
@@ -169,9 +171,14 @@ fn finish_phasing(shell: &mut ShellSpace, reader: &mut Reader<'_>) {
 
 /// At least the roundest and highest design of a search has its perigee above ground.
 fn check_above_ground(shell: &ShellSpace, reader: &mut Reader<'_>) {
-    let (eccentricity, altitude_km) = (shell.eccentricity[0], shell.altitude_km[1]);
+    let eccentricity = shell.eccentricity[0];
+    let Some([_, altitude_km]) = shell.altitude_km.limits() else {
+        return check_relations(shell, reader);
+    };
     let perigee_km = (RADIUS_KM + altitude_km) * (1.0 - eccentricity) - RADIUS_KM;
-    if perigee_km <= 0.0 {
+    if perigee_km > 0.0 {
+        check_relations(shell, reader);
+    } else {
         let keys = [key!(ShellSpace.eccentricity), key!(ShellSpace.altitude_km)];
         let fault = Fault::Underground {
             eccentricity,
@@ -182,15 +189,36 @@ fn check_above_ground(shell: &ShellSpace, reader: &mut Reader<'_>) {
     }
 }
 
+/// There is an orbit at one end of what is given as an interval.
+fn check_relations(shell: &ShellSpace, reader: &mut Reader<'_>) {
+    let ends = |limits: Option<[f64; 2]>| limits.map_or(vec![None], |of| of.map(Some).to_vec());
+    let mut fault = None;
+    for inclination_deg in ends(shell.inclination_deg.limits()) {
+        for altitude_km in ends(shell.altitude_km.limits()) {
+            match shell.orbit(inclination_deg, altitude_km, shell.eccentricity[0]) {
+                Ok(_) => return,
+                Err(error) => fault = Some(error),
+            }
+        }
+    }
+    if let Some(source) = fault {
+        let keys = [
+            key!(ShellSpace.altitude_km),
+            key!(ShellSpace.inclination_deg),
+        ];
+        reader.refuse(&keys, Fault::NoSuchOrbit { source });
+    }
+}
+
 impl ShellSpace {
     /// What the template of a scenario shows.
     pub(super) fn examples() -> Vec<Self> {
-        let shell = |pattern, inclination_deg| Self {
+        let shell = |pattern, inclination_deg: [f64; 2]| Self {
             pattern,
             planes: [4, 12],
             satellites_per_plane: [0, 12],
-            inclination_deg,
-            altitude_km: [600.0, 1200.0],
+            inclination_deg: inclination_deg.into(),
+            altitude_km: [600.0, 1200.0].into(),
             phasing: [1, 1],
             eccentricity: [0.0, 0.0],
             arg_perigee_deg: [0.0, 0.0],

@@ -55,8 +55,8 @@ fn space(has_second: bool) -> DesignSpace {
     one.planes = [2, 4];
     one.satellites_per_plane = [2, 6];
     one.phasing = [0, 2];
-    one.inclination_deg = [50.0, 70.0];
-    one.altitude_km = [900.0, 1500.0];
+    one.inclination_deg = [50.0, 70.0].into();
+    one.altitude_km = [900.0, 1500.0].into();
     one.steps.inclination_step_deg = 20.0;
     one.steps.altitude_step_km = 600.0;
     let mut space: DesignSpace = one.clone().into();
@@ -65,8 +65,8 @@ fn space(has_second: bool) -> DesignSpace {
         one.planes = [3, 3];
         one.satellites_per_plane = [0, 2];
         one.phasing = [1, 1];
-        one.inclination_deg = [90.0, 90.0];
-        one.altitude_km = [1200.0, 1200.0];
+        one.inclination_deg = [90.0, 90.0].into();
+        one.altitude_km = [1200.0, 1200.0].into();
         space.shells.push(one);
     }
     space

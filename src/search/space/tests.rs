@@ -1,4 +1,6 @@
-use super::super::shell_space::PHASING;
+/// The place of the phasing after P, S, i and h.
+const PHASING: usize = 4;
+
 use super::super::testing::shell;
 use super::*;
 use crate::constellation::Pattern;
@@ -60,7 +62,7 @@ fn two_shells() -> DesignSpace {
         pattern: vec![Pattern::Star, Pattern::Delta],
         planes: [2, 6],
         satellites_per_plane: [0, 8],
-        inclination_deg: [80.0, 90.0],
+        inclination_deg: [80.0, 90.0].into(),
         raan_deg: Some([0.0, 60.0]),
         arg_latitude_deg: Some([45.0, 45.0]),
         node_step_deg: Some([20.0, 31.6]),

@@ -27,8 +27,8 @@ fn two_shells() -> DesignSpace {
         pattern: vec![Pattern::Delta, Pattern::Star],
         planes: [3, 7],
         satellites_per_plane: [3, 7],
-        inclination_deg: [50.0, 50.0],
-        altitude_km: [1000.0, 1000.0],
+        inclination_deg: [50.0, 50.0].into(),
+        altitude_km: [1000.0, 1000.0].into(),
         phasing: [0, 2],
         ..shell()
     };
@@ -36,7 +36,7 @@ fn two_shells() -> DesignSpace {
         pattern: vec![Pattern::Star, Pattern::Delta],
         planes: [2, 4],
         satellites_per_plane: [0, 3],
-        inclination_deg: [88.0, 88.0],
+        inclination_deg: [88.0, 88.0].into(),
         phasing: [1, 1],
         ..middle.clone()
     };

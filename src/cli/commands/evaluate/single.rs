@@ -8,7 +8,8 @@ use crate::keyword::Keyword;
 use crate::report::failures::FailureSummary;
 use crate::report::{
     Align, Alone, Assessment, ConstellationEntry, ConstraintCheck, DeploymentSummary,
-    ExpectedService, PhaseSpread, Table, on_demand_quantities, quantity_label, shown,
+    ExpectedService, PhaseRange, PhaseSpread, RelativeNodes, Table, in_order, on_demand_quantities,
+    quantity_label, shown,
 };
 use crate::scenario::Scenario;
 use crate::search::Quantity;
@@ -16,7 +17,7 @@ use crate::units::counted;
 use anyhow::Result;
 
 /// The quantities that always have a row.
-const ROWS: [Quantity; 12] = [
+const ROWS: [Quantity; 13] = [
     Quantity::MeanVisible,
     Quantity::LeastVisible,
     Quantity::MeanPdop,
@@ -29,6 +30,7 @@ const ROWS: [Quantity; 12] = [
     Quantity::Coverage4,
     Quantity::JPos,
     Quantity::JCost,
+    Quantity::LeastSeparationKm,
 ];
 
 /// Prints what was computed of a design, or of the satellites of files.
@@ -58,6 +60,8 @@ pub(super) fn print(work: &EvaluationContext<'_>, entry: ConstellationEntry) -> 
     let text = text(work.scenario, &title, evaluated);
     let phases = evaluated.gnss_phases.as_ref();
     let text = text + &phases.map_or_else(String::new, phases_table);
+    let nodes = evaluated.relative_nodes.as_ref();
+    let text = text + &nodes.map_or_else(String::new, nodes_text);
     let expected = evaluated.expected.as_ref();
     let text = text + &expected.map_or_else(String::new, ExpectedService::to_text);
     let phases = evaluated.phases.as_ref();
@@ -157,6 +161,7 @@ fn text(scenario: &Scenario, title: &str, evaluated: &Assessment) -> String {
         "satellites / mean visible".to_owned(),
     );
     let further = objective_rows(scenario, evaluated).into_iter();
+    let further = separation_row(evaluated).into_iter().chain(further);
     for row in further.chain(on_demand_rows(scenario, metrics)) {
         table.row(row);
     }
@@ -166,6 +171,20 @@ fn text(scenario: &Scenario, title: &str, evaluated: &Assessment) -> String {
         scenario.name,
         table.to_text()
     )
+}
+
+/// How close satellites come to each other.
+fn separation_row(evaluated: &Assessment) -> Option<[String; 3]> {
+    let all = evaluated.separation.iter();
+    let least = all.min_by(|a, b| a.least_km.total_cmp(&b.least_km))?;
+    let shells = least.shells.as_ref();
+    let shells = shells.map_or_else(String::new, |of| format!("shells {of}: "));
+    let between = least.between();
+    Some([
+        "least separation".to_owned(),
+        format!("{:.2}", least.least_km),
+        format!("km, {shells}{between}, by mean elements over all time"),
+    ])
 }
 
 /// What is computed on demand: the gain over the GNSS alone, the information of windows, and the accuracy in metres.
@@ -223,13 +242,34 @@ fn objective_rows(scenario: &Scenario, evaluated: &Assessment) -> Vec<[String; 3
 
 /// The range of each metric over the phases of the GNSS.
 fn phases_table(spread: &PhaseSpread) -> String {
+    format!(
+        "\nover {} phases of the GNSS, the first of which is that above\n{}",
+        spread.phases,
+        ranges_table(&spread.rows())
+    )
+}
+
+/// How the shells turn against each other, and the range of each metric over relative nodes.
+fn nodes_text(nodes: &RelativeNodes) -> String {
+    let spread = nodes.spread.as_ref().map(|of| {
+        format!(
+            "\nover {} relative nodes, equally spaced in {:.1} days, the first of which is that above\n{}",
+            of.nodes,
+            of.period_days,
+            ranges_table(&in_order(&of.spread.metrics))
+        )
+    });
+    nodes.to_text() + &spread.unwrap_or_default()
+}
+
+fn ranges_table(rows: &[(&str, Option<PhaseRange>)]) -> String {
     let mut table = Table::new(&[
         ("metric", Align::Left),
         ("minimum", Align::Right),
         ("mean", Align::Right),
         ("maximum", Align::Right),
     ]);
-    for (name, range) in spread.rows() {
+    for &(name, range) in rows {
         let parts = [
             range.map(|of| of.min),
             range.map(|of| of.mean),
@@ -241,11 +281,7 @@ fn phases_table(spread: &PhaseSpread) -> String {
         };
         table.row([name.to_owned()].into_iter().chain(parts.map(digits)));
     }
-    format!(
-        "\nover {} phases of the GNSS, the first of which is that above\n{}",
-        spread.phases,
-        table.to_text()
-    )
+    table.to_text()
 }
 
 /// The constraints of the scenario, one per line: the value, and whether the bound is met.

@@ -6,7 +6,7 @@ use crate::cli::output;
 use crate::evaluate::DopStatistics;
 use crate::exchange::constellation::Constellation;
 use crate::report::{
-    Align, ComparisonColumn, ConstellationEntry, Table, comparison_columns, shown,
+    Align, ComparisonColumn, ConstellationEntry, PhaseRange, Table, comparison_columns, shown,
 };
 use crate::search::{CountedSatellites, Goals, Quantity};
 use crate::units::counted;
@@ -24,6 +24,8 @@ pub(super) struct TextTable {
     goals: Goals,
     /// Metrics whose range over phases of the GNSS is shown.
     phases: &'static [(&'static str, &'static str)],
+    /// Metrics whose range over relative nodes is shown.
+    nodes: &'static [(&'static str, &'static str)],
     /// Whether constellations have names of their own.
     has_names: bool,
     has_dops: bool,
@@ -69,6 +71,7 @@ impl TextTable {
             numbers,
             goals: goals.clone(),
             phases: phases(work),
+            nodes: nodes(work),
             has_names,
             has_dops: work.args.dops,
             has_constraints: !goals.constraints.is_empty(),
@@ -132,11 +135,12 @@ impl TextTable {
         cells.extend(numbers.map(|one| one.text(one.value(metrics, quantity))));
         for (_, name) in self.phases {
             let spread = evaluated.gnss_phases.as_ref();
-            let range = spread.and_then(|of| *of.metrics.get(*name)?);
-            cells.push(match range {
-                Some(of) => format!("{:.4}-{:.4}", of.min, of.max),
-                None => shown::NONE.to_owned(),
-            });
+            cells.push(range_cell(spread.and_then(|of| *of.metrics.get(*name)?)));
+        }
+        for (_, name) in self.nodes {
+            let nodes = evaluated.relative_nodes.as_ref();
+            let spread = nodes.and_then(|of| Some(&of.spread.as_ref()?.spread));
+            cells.push(range_cell(spread.and_then(|of| *of.metrics.get(*name)?)));
         }
         if self.has_dops {
             let dops = evaluated.dops.iter().flat_map(DopStatistics::named);
@@ -150,6 +154,13 @@ impl TextTable {
         }
         cells
     }
+}
+
+fn range_cell(range: Option<PhaseRange>) -> String {
+    range.map_or_else(
+        || shown::NONE.to_owned(),
+        |of| format!("{:.4}-{:.4}", of.min, of.max),
+    )
 }
 
 fn table(columns: &[(String, Align)]) -> Table {
@@ -169,6 +180,8 @@ fn columns(
             .iter()
             .map(|(name, _)| format!("{name}\nover phases")),
     );
+    let over_nodes = nodes(work).iter();
+    names.extend(over_nodes.map(|(name, _)| format!("{name}\nover nodes")));
     if work.args.dops {
         for name in work.evaluator.dop_names() {
             names.extend(["mean", "95 %"].map(|statistic| format!("{name}\n{statistic}")));
@@ -190,17 +203,22 @@ fn columns(
 
 /// Heading and name of the metrics whose range over phases of the GNSS is shown.
 fn phases(work: &EvaluationContext<'_>) -> &'static [(&'static str, &'static str)] {
-    const SHOWN: [(&str, &str); 3] = [
-        ("mean PDOP", "mean_pdop"),
-        ("maximum PDOP", "max_pdop"),
-        ("availability", "availability"),
-    ];
-    if work.args.gnss_phases.is_some() {
-        &SHOWN
-    } else {
-        &[]
-    }
+    let is_shown = work.args.gnss_phases.is_some();
+    if is_shown { &RANGES } else { &[] }
 }
+
+/// The same over relative nodes.
+fn nodes(work: &EvaluationContext<'_>) -> &'static [(&'static str, &'static str)] {
+    let is_shown = work.args.relative_nodes.is_some();
+    if is_shown { &RANGES } else { &[] }
+}
+
+/// Heading and name of the metrics whose ranges are shown.
+const RANGES: [(&str, &str); 3] = [
+    ("mean PDOP", "mean_pdop"),
+    ("maximum PDOP", "max_pdop"),
+    ("availability", "availability"),
+];
 
 /// `met`, or the constraints that are not.
 fn verdicts(entry: &ConstellationEntry) -> String {

@@ -1,7 +1,8 @@
 //! Random search spaces.
 
 use super::{Keyword, Pattern, SearchShells, SearchSpace, rising};
-use crate::search::{ShellSpace, SweepSteps};
+use crate::orbit::relations::SunSynchronous;
+use crate::search::{IntervalOr, ShellSpace, SweepSteps};
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
@@ -40,26 +41,37 @@ fn shell() -> impl Strategy<Value = ShellSpace> {
         rising(0..=400_u32),
         subsequence(<Pattern as Keyword>::ALL.to_vec(), 1..=3),
     );
-    let real = (rising(0.0..=180.0), rising(1.0..=100_000.0));
+    let real = (rising(0.0..=180.0), rising(1.0..=100_000.0), 0..4_u8);
     let ellipse = (rising(0.0..=0.89), rising(0.0..=360.0));
     let orientation = (angles(), angles(), angles());
     (whole, real, ellipse, orientation, steps()).prop_map(
         |(whole, real, ellipse, orientation, steps)| {
             let (planes, satellites_per_plane, mut phasing, pattern) = whole;
-            let (inclination_deg, altitude_km) = real;
+            let (inclination_deg, altitude_km, following) = real;
             let (eccentricity, arg_perigee_deg) = ellipse;
             let (raan_deg, arg_latitude_deg, node_step_deg) = orientation;
             phasing[0] = phasing[0].min(planes[1] - 1);
             // At least the roundest and highest design is above ground.
             let mut eccentricity: [f64; 2] = eccentricity;
-            eccentricity[0] = eccentricity[0].min(altitude_km[1] / 2e5);
+            let roundest = if following < 2 {
+                altitude_km[1] / 2e5
+            } else {
+                1e-3
+            };
+            eccentricity[0] = eccentricity[0].min(roundest);
             ShellSpace {
                 node_step_deg: node_step_deg.filter(|_| !pattern.contains(&Pattern::Lattice)),
                 pattern,
                 planes,
                 satellites_per_plane,
-                inclination_deg,
-                altitude_km,
+                inclination_deg: match following {
+                    3 => IntervalOr::Following(SunSynchronous),
+                    _ => inclination_deg.into(),
+                },
+                altitude_km: match following {
+                    2 | 3 => IntervalOr::Following("repeat:14/1".parse().unwrap()),
+                    _ => altitude_km.into(),
+                },
                 phasing,
                 eccentricity,
                 arg_perigee_deg,

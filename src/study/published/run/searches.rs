@@ -5,7 +5,7 @@ use crate::constellation::Design;
 use crate::evaluate::{Evaluator, Metrics};
 use crate::optimize::{Individual, Strategy, best, fuzzy};
 use crate::scenario::{Algorithm, Scenario};
-use crate::search::{DesignProblem, ShellSpace};
+use crate::search::{DesignProblem, IntervalOr, ShellSpace};
 use crate::study::published::steps::StudySearch;
 use serde::Serialize;
 
@@ -121,6 +121,9 @@ fn described(scenario: &Scenario) -> String {
 
 fn of_shell(space: &ShellSpace) -> String {
     let patterns: Vec<String> = space.pattern.iter().map(ToString::to_string).collect();
-    let [low, high] = space.inclination_deg;
-    format!("{} {low}° to {high}°", patterns.join(" or "))
+    let inclinations = match space.inclination_deg {
+        IntervalOr::Between([low, high]) => format!("{low}° to {high}°"),
+        IntervalOr::Following(sun) => sun.to_string(),
+    };
+    format!("{} {inclinations}", patterns.join(" or "))
 }

@@ -1,0 +1,158 @@
+//! Satellites and shells with respect to each other, and orbits with respect to the Earth and the Sun, as a user sees them.
+
+use crate::cli::{ran, refused};
+use serde_json::Value;
+use tempfile::TempDir;
+
+const SMALL: [&str; 6] = [
+    "--set",
+    "region.step-deg=20",
+    "--set",
+    "time.step-s=1200",
+    "--set",
+    "time.duration-h=4",
+];
+
+const HYBRID: &str = "delta:53:12/3/1@1100+star:90:8/2/1@1100";
+
+fn json(arguments: &[&str]) -> Value {
+    let place = TempDir::new().unwrap();
+    let ran = ran(place.path(), &[arguments, &["--format", "json"]].concat());
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    serde_json::from_str(&ran.stdout).unwrap()
+}
+
+fn evaluated(arguments: &[&str]) -> Value {
+    json(&[&["evaluate"], &SMALL[..], arguments].concat())
+}
+
+/// F = 0 to 12 of 182/13 at 55° and 925 km, computed elsewhere by brute force.
+#[test]
+fn validate_the_table_of_separations_by_phasing() {
+    let table = json(&["separation", "delta:55:182/13/5@925", "--all-phasings"]);
+    let expected = [
+        134.20, 460.94, 12.54, 31.08, 50.05, 33.68, 155.13, 187.27, 161.63, 298.97, 403.43, 14.02,
+        25.18,
+    ];
+    let rows = table.as_array().unwrap();
+    assert_eq!(rows.len(), 13);
+    for (row, expected) in rows.iter().zip(expected) {
+        let ours = row["least_separation_km"].as_f64().unwrap();
+        assert!(
+            (ours - expected).abs() <= 0.005,
+            "{}: {ours}",
+            row["notation"]
+        );
+        assert!(row["separations"][0]["satellites"][1].is_string());
+    }
+    let place = TempDir::new().unwrap();
+    let text = ran(place.path(), &["separation", HYBRID, "--duration-h", "2"]).stdout;
+    assert!(
+        text.contains("A-B") && text.contains("within 2 h"),
+        "{text}"
+    );
+    assert!(text.contains("-0.4 to +4.4 km"), "{text}");
+    let told = refused(&["separation", HYBRID, "--duration-h", "0"]);
+    assert!(told.contains("hours above 0, at most 8784"), "{told}");
+}
+
+/// As a constraint it needs no evaluation, and files have none.
+#[test]
+fn a_separation_is_a_constraint() {
+    let bound = "objectives.constraints=[\"least-separation-km >= 100\"]";
+    let verdict = |phasing: usize| {
+        let design = format!("delta:55:182/13/{phasing}@925");
+        let found = evaluated(&["--set", bound, "--design", &design]);
+        let separation = &found["separation"][0]["least_km"];
+        assert_eq!(&found["constraints"][0]["value"], separation);
+        found["constraints"][0]["met"].as_bool().unwrap()
+    };
+    assert!(verdict(1));
+    assert!(!verdict(2));
+}
+
+#[test]
+fn metrics_spread_over_relative_nodes() {
+    let found = evaluated(&["--design", HYBRID, "--relative-nodes", "3"]);
+    let nodes = &found["relative_nodes"];
+    let rate = nodes["pairs"][0]["rate_deg_per_day"].as_f64().unwrap();
+    assert!((rate - 3.436).abs() < 5e-4, "{rate}");
+    assert_eq!(nodes["spread"]["nodes"], 3);
+    let of = |part: &str| {
+        let metric = &nodes["spread"]["metrics"]["mean_visible"];
+        metric[part].as_f64().unwrap()
+    };
+    assert!(of("min") < of("mean") && of("mean") < of("max"));
+    // The node of the design is one of them, and another is that of the turned design.
+    let own = found["metrics"]["mean_visible"].as_f64().unwrap();
+    let turned = HYBRID.to_owned() + ",raan=120";
+    let later = evaluated(&["--design", &turned]);
+    let later = later["metrics"]["mean_visible"].as_f64().unwrap();
+    for value in [own, later] {
+        assert!(of("min") <= value && value <= of("max"), "{value}");
+    }
+    let flag = ["--relative-nodes", "3"];
+    let one = ["evaluate", "--design", "delta:53:12/3/1@1100"];
+    let told = refused(&[&one[..], &flag].concat());
+    assert!(told.contains("one shell"), "{told}");
+    let slow = [
+        "evaluate",
+        "--design",
+        "delta:53:12/3/1@1100+delta:53:4/2/1@1100,u=7",
+    ];
+    let told = refused(&[&slow[..], &flag].concat());
+    assert!(
+        told.contains("shells A and B turn against each other by 0.000° a year"),
+        "{told}"
+    );
+    let place = TempDir::new().unwrap();
+    let csv = [
+        &["evaluate", "--design", HYBRID, "--format", "csv"],
+        &flag[..],
+        &SMALL,
+    ]
+    .concat();
+    let csv = ran(place.path(), &csv).stdout;
+    let mut lines = csv.lines();
+    let [header, row, gnss] = [(); 3].map(|()| lines.next().unwrap().split(',').count());
+    assert!(csv.contains("mean_pdop_nodes_max"), "{csv}");
+    assert_eq!((row, gnss), (header, header));
+}
+
+/// Every candidate has the altitude at which its track repeats.
+#[test]
+fn a_search_follows_the_ground_track() {
+    let place = TempDir::new().unwrap();
+    let small = [
+        "optimize",
+        "--out",
+        "out",
+        "--format",
+        "json",
+        "--set",
+        "optimizer.population=4",
+        "--set",
+        "optimizer.generations=2",
+        "--set",
+        "search.altitude-km=repeat:14/1",
+    ];
+    let ran = ran(place.path(), &[&small[..], &SMALL].concat());
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let result: Value = serde_json::from_str(&ran.stdout).unwrap();
+    for member in result["front"].as_array().unwrap() {
+        let orbit = json(&["orbit", member["design"]["notation"].as_str().unwrap()]);
+        let per_day = orbit[0]["revolutions_per_nodal_day"].as_f64().unwrap();
+        // Altitudes are rounded to a millimetre, 3e-9 revolutions.
+        assert!((per_day - 14.0).abs() < 1e-8, "{per_day}");
+    }
+    let both = json(&["orbit", "delta:sun-synchronous:1/1/0@repeat:233/16"]);
+    let notation = both[0]["notation"].as_str().unwrap();
+    assert!(notation.starts_with("delta:98."), "{notation}");
+    let told = refused(&["orbit", "delta:55:1/1/0@repeat:18/1"]);
+    assert!(
+        told.contains("repeat:18/1 needs an orbit whose perigee is below the ground"),
+        "{told}"
+    );
+    let told = refused(&["orbit", "delta:55:1/1/0@repeat:15"]);
+    assert!(told.contains("repeat:REVOLUTIONS/DAYS"), "{told}");
+}
