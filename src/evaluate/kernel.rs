@@ -72,17 +72,17 @@ use super::counts::Threshold;
 use super::metrics::Evaluated;
 use super::series::Instant;
 use super::weights::WholeWeights;
+use crate::dop::ObservationWeights;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
 use fixed::{Fixed, FixedSample, FixedTiles, SampleInstant};
-use lanes::{Lanes, MaskTerms};
-use limits::Limits;
+use lanes::{Lanes, MaskTerms, SineWeights, UnitWeights};
+use limits::{Limits, SingleLimits};
 use memory::Keep;
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::Propagation;
 use rayon::prelude::*;
-use refine::{Ranked, Surround};
 use sample::{Doubt, Sample, SampleContext, SampleOutcome, UNSOLVED, Workspace};
 use settle::Settling;
 use std::ops::Range;
@@ -92,9 +92,6 @@ use tiles::Tiles;
 
 /// Values of PDOP computed in one piece of work.
 const CHUNK_VALUES: usize = 1 << 18;
-
-/// Upper limit on the PDOP up to which f32 is trusted.
-const SINGLE_BELOW: f32 = 2.0;
 
 /// Samples recomputed in f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -173,7 +170,12 @@ impl Kernel {
             mask: setup.mask,
             weights: setup.observation_weights,
             limits: Limits {
-                single_below: SINGLE_BELOW.min(setup.pdop_cap as f32 * 0.999),
+                single: match setup.observation_weights {
+                    ObservationWeights::Unit => SingleLimits::new::<UnitWeights>(setup.pdop_cap),
+                    ObservationWeights::SineElevation => {
+                        SingleLimits::new::<SineWeights>(setup.pdop_cap)
+                    }
+                },
                 cap: setup.pdop_cap,
                 available: Threshold(setup.metrics.availability_pdop),
                 clocks: setup.clock_states() as u32,
@@ -269,50 +271,6 @@ impl Kernel {
             None => None,
         };
         Ok((self.evaluated(&mut tally, &counts, summary), tally.rechecks))
-    }
-
-    /// Recomputes the order statistics in f64.
-    fn refine(
-        &self,
-        propagation: &Propagation<'_>,
-        values: &[Lanes<f32>],
-        ranked: [Ranked; 4],
-        summary: &mut Summary,
-    ) -> Result<(), EphemerisError> {
-        let statistics = [
-            &mut summary.p50,
-            &mut summary.p95,
-            &mut summary.p99,
-            &mut summary.max,
-        ];
-        let windows: [_; 4] = self.instructions.run(Surround {
-            tiles: &self.scene.tiles.tiles,
-            values,
-            ranked,
-        });
-        let exact = Limits {
-            single_below: 0.0,
-            ..self.scene.limits
-        };
-        let tiles = self.scene.tiles.tiles.len();
-        let weight = |n: usize, lane: usize| self.scene.tiles.tiles[n].weights.whole.0[lane];
-        for (statistic, window) in statistics.into_iter().zip(&windows) {
-            let mut again = Vec::with_capacity(window.places.len());
-            for together in window.places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
-                let k = together[0].0 / tiles;
-                self.run(propagation, k..k + 1, exact, |instant| {
-                    again.extend(together.iter().map(|&(n, lane)| {
-                        let n = n % tiles;
-                        (instant.outcome.pdop[n].0[lane], weight(n, lane))
-                    }));
-                    Ok(())
-                })?;
-            }
-            if let Some(value) = window.pick(again) {
-                *statistic = value;
-            }
-        }
-        Ok(())
     }
 
     /// Two passes over the samples, each on all threads; only counts are stored.

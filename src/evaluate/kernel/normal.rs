@@ -120,6 +120,12 @@ impl<R: Real> NormalLanes<R> {
         at(&self.matrix, lane)
     }
 
+    #[inline(always)]
+    pub(super) fn trace(&self, lane: usize) -> R {
+        let [xx, yy, zz, ..] = &self.matrix;
+        xx.0[lane] + yy.0[lane] + zz.0[lane]
+    }
+
     /// The GNSS part and Σ w v vᵀ - (Σ w v)(Σ w v)ᵀ / Σ w of the design.
     #[inline(always)]
     fn of_two_clocks<W: Weighting>(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
@@ -132,7 +138,7 @@ impl<R: Real> NormalLanes<R> {
             let clocks = u32::from(used > 0);
             system.surplus.0[l] = u32::from(fixed.surplus[l]) + used - clocks;
             let weight = sums.weight::<W>(l);
-            let scale = R::ONE / if used > 0 { weight } else { R::ONE };
+            let scale = R::ONE / if weight > R::ZERO { weight } else { R::ONE };
             let (x, y, z) = (sums.x.0[l], sums.y.0[l], sums.z.0[l]);
             let (xx, yy, zz) = (sums.xx.0[l], sums.yy.0[l], sums.zz::<W>(l));
             let matrix = &mut system.matrix;
@@ -158,10 +164,15 @@ impl<R: Real> NormalLanes<R> {
             self.surplus.0[l] += m - u32::from(m > 0) + both;
             let (mine, theirs) = (sums.weight::<W>(l), shared.weight::<R>(l));
             let gain = mine * theirs / if n + m > 0 { mine + theirs } else { R::ONE };
-            let scale = R::ONE / if n > 0 { mine } else { R::ONE };
-            let x = sums.x.0[l] * scale - shared.mean::<R>(0, l);
-            let y = sums.y.0[l] * scale - shared.mean::<R>(1, l);
-            let z = sums.z.0[l] * scale - shared.mean::<R>(2, l);
+            let scale = R::ONE / if mine > R::ZERO { mine } else { R::ONE };
+            let centre = [
+                sums.centre::<W>(0),
+                sums.centre::<W>(1),
+                sums.centre::<W>(2),
+            ];
+            let x = sums.x.0[l] * scale + (centre[0] - shared.mean::<R>(0, l));
+            let y = sums.y.0[l] * scale + (centre[1] - shared.mean::<R>(1, l));
+            let z = sums.z.0[l] * scale + (centre[2] - shared.mean::<R>(2, l));
             self.matrix[0].0[l] += gain * x * x;
             self.matrix[1].0[l] += gain * y * y;
             self.matrix[2].0[l] += gain * z * z;

@@ -4,6 +4,7 @@ use super::Kernel;
 use super::fixed::{FixedSample, FixedTiles, SampleInstant};
 use super::instructions::Work;
 use super::lanes::{SineWeights, UnitWeights, Weighting};
+use super::limits::Limits;
 use super::propagation::{PatternPropagator, Propagation};
 use super::sample::{Begun, SampleContext, SampleOutcome, Workspace};
 use super::settle::Settling;
@@ -59,9 +60,21 @@ impl Kernel {
         &self,
         ephemeris: &Ephemeris,
         instants: impl Iterator<Item = (usize, &'t [u32])>,
-        mut see: impl FnMut(SampleTile<'_>) -> ControlFlow<()>,
+        see: impl FnMut(SampleTile<'_>) -> ControlFlow<()>,
     ) -> Result<(), EphemerisError> {
         let propagation = Propagation::new(ephemeris);
+        self.probe_within(&propagation, self.scene.limits, instants, see)
+    }
+
+    /// The same within narrower limits, or wider ones.
+    pub(super) fn probe_within<'t>(
+        &self,
+        propagation: &Propagation<'_>,
+        limits: Limits,
+        instants: impl Iterator<Item = (usize, &'t [u32])>,
+        mut see: impl FnMut(SampleTile<'_>) -> ControlFlow<()>,
+    ) -> Result<(), EphemerisError> {
+        let ephemeris = propagation.ephemeris;
         let mut work = Workspace::new(ephemeris.satellites().len());
         let mut outcome = SampleOutcome::new(self.scene.tiles.tiles.len());
         let mut scratch = FixedTiles::default();
@@ -76,6 +89,7 @@ impl Kernel {
             propagation.start(instant.elapsed_s, instant.rotation, positions, turns)?;
             self.instructions.run(SomeTiles {
                 scene: &self.scene,
+                limits,
                 patterns: &propagation.patterns,
                 tiles,
                 fixed,
@@ -117,6 +131,7 @@ impl Kernel {
 /// Some tiles of one instant.
 struct SomeTiles<'a> {
     scene: &'a SampleContext,
+    limits: Limits,
     patterns: &'a [PatternPropagator],
     tiles: &'a [u32],
     fixed: FixedSample<'a>,
@@ -143,7 +158,7 @@ impl SomeTiles<'_> {
     #[inline(always)]
     fn evaluate<W: Weighting>(self) {
         let (scene, work, out) = (self.scene, self.work, self.outcome);
-        let begun = Begun::new::<W>(scene, scene.limits, work, out);
+        let begun = Begun::new::<W>(scene, self.limits, work, out);
         let Tiles { tiles, groups, .. } = &scene.tiles;
         let mut wanted = self.tiles;
         for group in groups {

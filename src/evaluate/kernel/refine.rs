@@ -4,13 +4,19 @@
 //! values so close to it that rounding may have changed their order are therefore recomputed, and the
 //! order statistic is taken among them.
 
+use super::Kernel;
 use super::instructions::Work;
 use super::lanes::Lanes;
+use super::limits::{Limits, SingleLimits};
+use super::propagation::Propagation;
 use super::tiles::Tile;
+use crate::ephemeris::EphemerisError;
+use crate::stats::Summary;
+use std::ops::ControlFlow;
 
 /// Relative distance within which the order of two f32 values is meaningless: more than twice the error
 /// of one.
-const WINDOW: f64 = 2e-6;
+const WINDOW: f64 = 4e-6;
 
 /// With more values than this in a window, they are so dense that their order does not matter.
 const CROWD: usize = 256;
@@ -111,5 +117,67 @@ impl<const N: usize> Work for Surround<'_, N> {
             }
         }
         windows
+    }
+}
+
+impl Kernel {
+    /// Recomputes the order statistics in f64.
+    pub(super) fn refine(
+        &self,
+        propagation: &Propagation<'_>,
+        values: &[Lanes<f32>],
+        ranked: [Ranked; 4],
+        summary: &mut Summary,
+    ) -> Result<(), EphemerisError> {
+        let statistics = [
+            &mut summary.p50,
+            &mut summary.p95,
+            &mut summary.p99,
+            &mut summary.max,
+        ];
+        let windows: [_; 4] = self.instructions.run(Surround {
+            tiles: &self.scene.tiles.tiles,
+            values,
+            ranked,
+        });
+        let exact = Limits {
+            single: SingleLimits::NONE,
+            ..self.scene.limits
+        };
+        for (statistic, window) in statistics.into_iter().zip(&windows) {
+            let again = self.again(propagation, exact, &window.places)?;
+            if let Some(value) = window.pick(again) {
+                *statistic = value;
+            }
+        }
+        Ok(())
+    }
+
+    /// Some values, each by the number of its tile among those of all instants and its lane, recomputed within other limits; with
+    /// their weights.
+    fn again(
+        &self,
+        propagation: &Propagation<'_>,
+        limits: Limits,
+        places: &[(usize, usize)],
+    ) -> Result<Vec<(f32, u64)>, EphemerisError> {
+        let tiles = self.scene.tiles.tiles.len();
+        let mut wanted: Vec<(usize, Vec<u32>)> = Vec::new();
+        for together in places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
+            let mut here: Vec<u32> = together.iter().map(|(n, _)| (n % tiles) as u32).collect();
+            here.dedup();
+            wanted.push((together[0].0 / tiles, here));
+        }
+        let instants = wanted.iter().map(|(k, here)| (*k, here.as_slice()));
+        let mut again = Vec::with_capacity(places.len());
+        let mut places = places.iter().peekable();
+        self.probe_within(propagation, limits, instants, |seen| {
+            let number = seen.instant * tiles + seen.tile;
+            while let Some((_, lane)) = places.next_if(|(n, _)| *n == number) {
+                again.push((seen.pdop[*lane], seen.weights[*lane]));
+            }
+            ControlFlow::Continue(())
+        })?;
+        Ok(again)
     }
 }

@@ -225,7 +225,7 @@ impl<'a> Begun<'a> {
             scene,
             mask: scene.single.with_slack(horizon.sine_slack(&work.positions)),
             slack: horizon.single_slack(&work.positions),
-            limits: limits.capped::<W>(horizon.single_below(&work.positions)),
+            limits: limits.capped(horizon.single_below(&work.positions)),
         }
     }
 
@@ -341,9 +341,9 @@ pub(super) struct TileCandidates<'a> {
 impl<'a> TileCandidates<'a> {
     #[inline(always)]
     fn sums<W: Weighting>(&self, tile: &Tile, mask: &MaskTerms<f32>) -> Sums<f32> {
-        let mut all = Sums::zero();
+        let mut all = Sums::about(tile.centre);
         for (block, &word) in self.blocks.iter().zip(self.words) {
-            let mut sums = Sums::zero();
+            let mut sums = Sums::about(tile.centre);
             for n in bits(word) {
                 sums.add::<W>(&tile.single, block.position_from(tile.middle, n), mask);
             }
@@ -364,12 +364,12 @@ impl<'a> TileCandidates<'a> {
     ) -> Sums<f32> {
         let (mask, positions) = (judging.scene.mask, judging.positions);
         out.seen.clear();
-        let mut all = Sums::zero();
+        let mut all = Sums::about(tile.centre);
         for (block, &word) in self.blocks.iter().zip(self.words) {
             let sights = &mut out.sights[..word.count_ones() as usize];
             let places = bits(word).map(|n| block.position_from(tile.middle, n));
             points.look_at(places, sights);
-            let mut sums = Sums::zero();
+            let mut sums = Sums::about(tile.centre);
             for (n, sight) in bits(word).zip(sights) {
                 let satellite = || positions.at(block.index(n));
                 let decide = |lane: usize| points.sky.surely_sees(lane, satellite(), mask);
@@ -460,7 +460,8 @@ impl LaneVerdict {
             let pdop = single.0[l];
             let sure = u32::from(sums.possible.0[l] == sums.count.0[l]);
             let counted = u32::from(system.surplus.0[l] >= POSITION_STATES);
-            let fine = u32::from(limits.holds_in_single(pdop));
+            let condition = Limits::condition(pdop, sums.rounded::<W>(l), system.trace(l));
+            let fine = u32::from(limits.holds_in_single(pdop, condition));
             verdict.pdop.0[l] = if counted != 0 { pdop } else { UNSOLVED };
             verdict.doubtful.0[l] = 1 - sure;
             verdict.coarse.0[l] = counted & (1 - fine) & sure;

@@ -44,6 +44,8 @@ pub(super) struct Tile {
     pub(super) members: Vec<u32>,
     /// The middle of the points, Earth-fixed, km: a place that is exact in f32.
     pub(super) middle: [f32; 3],
+    /// Half of the unit vector to there: the place that weighted sums are about.
+    pub(super) centre: [f32; 3],
     /// The points from there.
     pub(super) single: SiteLanes<f32>,
     pub(super) double: SiteLanes<f64>,
@@ -319,6 +321,7 @@ impl Tiles {
         let lanes = site_lanes(sites, members, middle.map(f64::from), single, f32::NAN);
         self.tiles.push(Tile {
             middle,
+            centre: centre_of(middle),
             single: lanes,
             double: site_lanes(sites, members, [0.0; 3], |x| x, f64::NAN),
             cap: self.horizon.cap(circle),
@@ -397,6 +400,13 @@ fn middle_of(sites: &[Site], members: &[u32]) -> [f32; 3] {
     let high = origins.reduce(|a, b| a.sup(&b));
     let middle = low.zip(high).map(|(low, high)| (low + high) / 2.0);
     middle.unwrap_or_default().map(|x| x as f32).into()
+}
+
+/// Half of the unit vector to the middle of a tile: about the mean line of sight of satellites weighted by elevation.
+fn centre_of(middle: [f32; 3]) -> [f32; 3] {
+    let unit = Vector3::from(middle).cast::<f64>().try_normalize(1.0);
+    let centre = unit.unwrap_or_default() * 0.5;
+    centre.map(|x| x as f32).into()
 }
 
 impl Tile {

@@ -1,6 +1,7 @@
 //! Where the lanes may decide, and where the plain path does.
 
-use super::super::limits::Limits;
+use super::super::lanes::UnitWeights;
+use super::super::limits::{Limits, SingleLimits};
 use super::decisions::street;
 use super::{Surface, Threshold, setup};
 use std::sync::Arc;
@@ -10,7 +11,7 @@ use std::sync::Arc;
 #[test]
 fn lanes_decide_outside_the_band_of_each_threshold() {
     let limits = Limits {
-        single_below: 2.0,
+        single: SingleLimits::new::<UnitWeights>(1e5),
         cap: 1e5,
         available: Threshold(6.0),
         clocks: 1,
