@@ -5,12 +5,14 @@
 pub mod checkpoint;
 pub(crate) mod columns;
 pub mod evaluations;
+pub(crate) mod hashed;
 pub mod inputs;
 mod results;
 pub mod size;
 #[cfg(feature = "sweep")]
 pub mod sweep;
 pub(crate) mod tables;
+pub mod tile;
 pub mod typed_columns;
 #[cfg(feature = "validate")]
 mod validation;

@@ -55,6 +55,7 @@ mod sample;
 mod settle;
 mod skylines;
 mod tally;
+mod tiled;
 mod tiles;
 
 pub(super) use fixed::at_most_u16;
@@ -82,7 +83,6 @@ use memory::Keep;
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::Propagation;
 use rayon::prelude::*;
-use refine::{Ranked, Surround};
 use sample::{Doubt, Sample, SampleContext, SampleOutcome, UNSOLVED, Workspace};
 use settle::Settling;
 use std::ops::Range;
@@ -198,11 +198,16 @@ impl Kernel {
         histograms: bool,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let propagation = &Propagation::new(ephemeris);
-        if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
+        if self.keeps_values() {
             self.keeping(propagation, histograms)
         } else {
             self.streaming(propagation, histograms)
         }
+    }
+
+    /// Whether the values of all samples are kept between the passes of the statistics.
+    fn keeps_values(&self) -> bool {
+        self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values
     }
 
     /// Passes all instants to `see`, one after the other.
@@ -256,63 +261,8 @@ impl Kernel {
             tally.rechecks = tally.rechecks.merged(rechecks);
             sum += self.count(&values[first..], &mut counts);
         }
-        let level = self.setup.metrics.cvar_level;
-        let summary = match RankSearch::new(&counts, level) {
-            Some(search) => {
-                let mut found = Found::new();
-                let tail = self.find(&values, &search, &mut found);
-                let mut summary = search.summary(&found, sum, tail);
-                let ranked = std::array::from_fn(|number| search.ranked(&found, number));
-                self.refine(propagation, &values, ranked, &mut summary)?;
-                Some(summary)
-            }
-            None => None,
-        };
+        let summary = self.summary_of_kept(propagation, &values, (&counts, sum))?;
         Ok((self.evaluated(&mut tally, &counts, summary), tally.rechecks))
-    }
-
-    /// Recomputes the order statistics in f64.
-    fn refine(
-        &self,
-        propagation: &Propagation<'_>,
-        values: &[Lanes<f32>],
-        ranked: [Ranked; 4],
-        summary: &mut Summary,
-    ) -> Result<(), EphemerisError> {
-        let statistics = [
-            &mut summary.p50,
-            &mut summary.p95,
-            &mut summary.p99,
-            &mut summary.max,
-        ];
-        let windows: [_; 4] = self.instructions.run(Surround {
-            tiles: &self.scene.tiles.tiles,
-            values,
-            ranked,
-        });
-        let exact = Limits {
-            single_below: 0.0,
-            ..self.scene.limits
-        };
-        let tiles = self.scene.tiles.tiles.len();
-        let weight = |n: usize, lane: usize| self.scene.tiles.tiles[n].weights.whole.0[lane];
-        for (statistic, window) in statistics.into_iter().zip(&windows) {
-            let mut again = Vec::with_capacity(window.places.len());
-            for together in window.places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
-                let k = together[0].0 / tiles;
-                self.run(propagation, k..k + 1, exact, |instant| {
-                    again.extend(together.iter().map(|&(n, lane)| {
-                        let n = n % tiles;
-                        (instant.outcome.pdop[n].0[lane], weight(n, lane))
-                    }));
-                    Ok(())
-                })?;
-            }
-            if let Some(value) = window.pick(again) {
-                *statistic = value;
-            }
-        }
-        Ok(())
     }
 
     /// Two passes over the samples, each on all threads; only counts are stored.
@@ -404,10 +354,15 @@ impl Kernel {
 
     /// Pieces of the time grid, independent of the number of threads.
     fn chunks(&self, samples: usize) -> Vec<Range<usize>> {
+        self.pieces(0..samples)
+    }
+
+    fn pieces(&self, instants: Range<usize>) -> Vec<Range<usize>> {
         let length = (CHUNK_VALUES / self.scene.tiles.slots()).max(1);
-        (0..samples)
+        let end = instants.end;
+        instants
             .step_by(length)
-            .map(|first| first..(first + length).min(samples))
+            .map(|first| first..(first + length).min(end))
             .collect()
     }
 

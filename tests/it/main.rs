@@ -35,4 +35,5 @@ mod skies;
 mod study;
 mod sweep;
 mod tidy;
+mod tiles;
 mod trust;

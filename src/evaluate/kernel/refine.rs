@@ -4,9 +4,15 @@
 //! values so close to it that rounding may have changed their order are therefore recomputed, and the
 //! order statistic is taken among them.
 
+use super::Kernel;
 use super::instructions::Work;
 use super::lanes::Lanes;
+use super::limits::Limits;
+use super::order_statistics::{Counts, Found, RankSearch};
+use super::propagation::Propagation;
 use super::tiles::Tile;
+use crate::ephemeris::EphemerisError;
+use crate::stats::Summary;
 
 /// Relative distance within which the order of two f32 values is meaningless: more than twice the error
 /// of one.
@@ -111,5 +117,69 @@ impl<const N: usize> Work for Surround<'_, N> {
             }
         }
         windows
+    }
+}
+
+impl Kernel {
+    /// The statistics of stored values, from their counts and their sum; `None` if none is solved.
+    pub(super) fn summary_of_kept(
+        &self,
+        propagation: &Propagation<'_>,
+        values: &[Lanes<f32>],
+        (counts, sum): (&Counts, f64),
+    ) -> Result<Option<Summary>, EphemerisError> {
+        let Some(search) = RankSearch::new(counts, self.setup.metrics.cvar_level) else {
+            return Ok(None);
+        };
+        let mut found = Found::new();
+        let tail = self.find(values, &search, &mut found);
+        let mut summary = search.summary(&found, sum, tail);
+        let ranked = std::array::from_fn(|number| search.ranked(&found, number));
+        self.refine(propagation, values, ranked, &mut summary)?;
+        Ok(Some(summary))
+    }
+
+    /// Recomputes the order statistics in f64.
+    fn refine(
+        &self,
+        propagation: &Propagation<'_>,
+        values: &[Lanes<f32>],
+        ranked: [Ranked; 4],
+        summary: &mut Summary,
+    ) -> Result<(), EphemerisError> {
+        let statistics = [
+            &mut summary.p50,
+            &mut summary.p95,
+            &mut summary.p99,
+            &mut summary.max,
+        ];
+        let windows: [_; 4] = self.instructions.run(Surround {
+            tiles: &self.scene.tiles.tiles,
+            values,
+            ranked,
+        });
+        let exact = Limits {
+            single_below: 0.0,
+            ..self.scene.limits
+        };
+        let tiles = self.scene.tiles.tiles.len();
+        let weight = |n: usize, lane: usize| self.scene.tiles.tiles[n].weights.whole.0[lane];
+        for (statistic, window) in statistics.into_iter().zip(&windows) {
+            let mut again = Vec::with_capacity(window.places.len());
+            for together in window.places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
+                let k = together[0].0 / tiles;
+                self.run(propagation, k..k + 1, exact, |instant| {
+                    again.extend(together.iter().map(|&(n, lane)| {
+                        let n = n % tiles;
+                        (instant.outcome.pdop[n].0[lane], weight(n, lane))
+                    }));
+                    Ok(())
+                })?;
+            }
+            if let Some(value) = window.pick(again) {
+                *statistic = value;
+            }
+        }
+        Ok(())
     }
 }
