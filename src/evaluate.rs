@@ -20,6 +20,7 @@ mod phases;
 mod plain;
 mod probe;
 mod series;
+mod tiled;
 mod weights;
 mod window;
 
@@ -34,6 +35,7 @@ pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;
 pub use phases::PhaseError;
 pub use series::{EpochMetrics, Outage, PointMetrics, SampleGrid, Series};
+pub use tiled::{TileCounts, TileError};
 pub use window::InformationPdop;
 
 use crate::constellation::Design;
@@ -399,12 +401,16 @@ impl Evaluator {
         ephemeris: &Ephemeris,
     ) -> Result<(Metrics, ViewHistograms), EphemerisError> {
         let (metrics, _, bins) = self.counted(ephemeris, true)?;
-        let [leo, all] = bins.unwrap_or_default();
+        Ok((metrics, self.histograms(bins.unwrap_or_default())?))
+    }
+
+    /// The histograms of LEO satellites in view and of all, with those of the GNSS alone.
+    fn histograms(&self, [leo, all]: [ViewBins; 2]) -> Result<ViewHistograms, EphemerisError> {
         let gnss = match self.gnss_alone()? {
             Some((_, gnss)) => gnss,
             None => &ViewBins::of_none(),
         };
-        Ok((metrics, ViewHistograms::new(&leo, gnss, &all)))
+        Ok(ViewHistograms::new(&leo, gnss, &all))
     }
 
     /// The metrics, the samples that were recomputed, and where asked for the satellites in view, LEO and all.

@@ -5,6 +5,7 @@
 pub mod checkpoint;
 pub(crate) mod columns;
 pub mod evaluations;
+pub(crate) mod hashed;
 pub mod inputs;
 mod provenance;
 mod results;
@@ -12,6 +13,7 @@ pub mod size;
 #[cfg(feature = "sweep")]
 pub mod sweep;
 pub(crate) mod tables;
+pub mod tile;
 pub mod typed_columns;
 #[cfg(feature = "validate")]
 mod validation;

@@ -25,7 +25,7 @@ pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 pub(crate) use separation::SeparationArgs;
 pub(crate) use size::SizeArgs;
 pub(crate) use sky::{DopArgs, OrbitArgs};
-pub(crate) use sweep::SweepArgs;
+pub(crate) use sweep::{Shard, SweepArgs};
 
 use crate::cli::constellations::Named;
 use clap::{Args, Parser, Subcommand, ValueEnum};

@@ -152,6 +152,31 @@ pub(crate) fn check_sweep(designs: f64, one_thread_s: f64) -> Result<()> {
     Ok(())
 }
 
+/// Says what the tiles of an evaluation come to.
+pub(crate) fn say_of_tiles(setup: &Setup, size: &TileSize) {
+    let threads = rayon::current_num_threads();
+    let seconds = size.one_thread_s / threads as f64;
+    output::hint(&format!(
+        "{} points x {} instants in {}: one takes {} here, {} of memory and a file of {}",
+        setup.sites.len(),
+        setup.grid.len(),
+        counted(size.tiles, "tile"),
+        shown_time(seconds as u64),
+        shown_bytes(setup.memory_bytes(threads)),
+        shown_bytes(size.all_bytes / size.tiles as u64),
+    ));
+}
+
+/// What a tile of an evaluation comes to.
+pub(crate) struct TileSize {
+    /// Number of tiles.
+    pub(crate) tiles: usize,
+    /// Bytes of the files of all tiles.
+    pub(crate) all_bytes: u64,
+    /// Time of a tile on one thread, seconds.
+    pub(crate) one_thread_s: f64,
+}
+
 /// All digits of a count up to a million, then a power of ten.
 fn shown_count(count: f64) -> String {
     if count < 1e6 {
@@ -174,7 +199,9 @@ fn told(size: ExportSize) -> String {
 
 fn shown_bytes(bytes: u64) -> String {
     let [mega, giga, tera] = [1e6, 1e9, 1e12].map(|unit| bytes as f64 / unit);
-    if tera >= 1.0 {
+    if mega < 1.0 {
+        "less than 1 MB".to_owned()
+    } else if tera >= 1.0 {
         format!("{tera:.1} TB")
     } else if giga >= 1.0 {
         format!("{giga:.1} GB")

@@ -36,13 +36,17 @@ pub(crate) fn provenance(scenarios: Vec<ScenarioStamp>) -> Provenance {
 /// copies of their inputs, and directories would tell about the user's machine.
 fn recorded(args: &[OsString]) -> Vec<String> {
     let mut words = vec![env!("CARGO_PKG_NAME").to_owned()];
-    let mut args = args.iter().skip(1).map(|arg| arg.to_string_lossy());
+    let args = args.iter().skip(1).map(|arg| arg.to_string_lossy());
+    let mut args = args.peekable();
     while let Some(arg) = args.next() {
         let option = arg.split('=').next().unwrap_or_default();
         if WITH_VALUE.contains(&option) {
             if !arg.contains('=') {
                 args.next();
             }
+        } else if option == "--merge" && words.get(1).is_some_and(|command| command == "evaluate") {
+            // The files of all tiles, which are the same together however many there are.
+            while args.next_if(|file| !file.starts_with('-')).is_some() {}
         } else if !LEFT_OUT.contains(&option) {
             words.push(without_directories(&arg));
         }
@@ -90,6 +94,17 @@ mod tests {
             "--merge",
         ];
         assert_eq!(words(&args), "navwalker sweep --chunk 5");
+        let args = [
+            "navwalker",
+            "evaluate",
+            "paper",
+            "--merge",
+            "one",
+            "two",
+            "--design",
+            "x",
+        ];
+        assert_eq!(words(&args), "navwalker evaluate paper --design x");
     }
 
     #[test]

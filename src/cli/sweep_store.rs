@@ -8,7 +8,8 @@ use crate::cli::study::Study;
 use crate::cli::{files, output};
 use crate::evaluate::Evaluator;
 use crate::keyword::Keyword;
-use crate::run::checkpoint::{hex, hex_sha256};
+use crate::run::checkpoint::hex_sha256;
+use crate::run::hashed::Hashed;
 use crate::run::sweep::{
     CHUNKS, CHUNKS_CSV, ChunkEntry, DESIGNS_CSV, INDEX_JSON, IndexedChunk, SWEEP_JSON, SweepChunk,
     SweepDesigns, SweepEvaluator, SweepIndex, SweepPlan, SweepSource, SweptDesign, TableFormat,
@@ -18,10 +19,9 @@ use crate::run::typed_columns::TypedColumns;
 use crate::run::{INPUTS, MANIFEST, SCENARIO, VERSION};
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
-use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// A sweep in its directory.
@@ -317,7 +317,7 @@ impl SweepStore {
                     return Err(io::Error::other(message));
                 }
             }
-            Ok(writer.finish()?.sha256())
+            Ok(writer.finish()?.finish().1)
         });
         let sha256 = sha256.with_context(cannot)?;
         let index = SweepIndex::new(&self.plan, indexed, without_metrics, sha256);
@@ -365,37 +365,6 @@ fn shared_lock(path: &Path) -> Option<File> {
     let file = File::open(path).ok()?;
     file.lock_shared().ok()?;
     Some(file)
-}
-
-/// A file whose bytes are hashed as they are written.
-struct Hashed<W> {
-    output: W,
-    hash: Sha256,
-}
-
-impl<W: Write> Hashed<W> {
-    fn new(output: W) -> Self {
-        Self {
-            output,
-            hash: Sha256::new(),
-        }
-    }
-
-    fn sha256(self) -> String {
-        hex(&self.hash.finalize())
-    }
-}
-
-impl<W: Write> Write for Hashed<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let written = self.output.write(bytes)?;
-        self.hash.update(&bytes[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.output.flush()
-    }
 }
 
 /// Evaluates a chunk for the study that it is of, and gives its result as a file; `None` if it was stopped.

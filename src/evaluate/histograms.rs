@@ -52,7 +52,8 @@ impl ViewHistograms {
 }
 
 /// The weight of the samples by their number of satellites in view.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
 pub(super) struct ViewBins(Vec<u64>);
 
 impl ViewBins {
@@ -77,9 +78,23 @@ impl ViewBins {
     }
 
     pub(super) fn merge(&mut self, other: &Self) {
-        for (visible, &weight) in (0..).zip(&other.0) {
-            self.add(visible, weight);
+        if other.0.len() > self.0.len() {
+            self.0.resize(other.0.len(), 0);
         }
+        for (mine, theirs) in self.0.iter_mut().zip(&other.0) {
+            // Those of files may be any numbers.
+            *mine = mine.saturating_add(*theirs);
+        }
+    }
+
+    /// The weight of all samples, and their satellites times weight; `None` if they are too many to be counted.
+    pub(super) fn totals(&self) -> Option<(u64, u128)> {
+        let mut totals = (0_u64, 0_u128);
+        for (visible, &weight) in (0_u128..).zip(&self.0) {
+            totals.0 = totals.0.checked_add(weight)?;
+            totals.1 += visible * u128::from(weight);
+        }
+        Some(totals)
     }
 
     /// What the metrics give of them.

@@ -55,6 +55,7 @@ mod sample;
 mod settle;
 mod skylines;
 mod tally;
+mod tiled;
 mod tiles;
 
 pub(super) use fixed::at_most_u16;
@@ -200,11 +201,16 @@ impl Kernel {
         histograms: bool,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let propagation = &Propagation::new(ephemeris);
-        if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
+        if self.keeps_values() {
             self.keeping(propagation, histograms)
         } else {
             self.streaming(propagation, histograms)
         }
+    }
+
+    /// Whether the values of all samples are kept between the passes of the statistics.
+    fn keeps_values(&self) -> bool {
+        self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values
     }
 
     /// Passes all instants to `see`, one after the other.
@@ -258,18 +264,7 @@ impl Kernel {
             tally.rechecks = tally.rechecks.merged(rechecks);
             sum += self.count(&values[first..], &mut counts);
         }
-        let level = self.setup.metrics.cvar_level;
-        let summary = match RankSearch::new(&counts, level) {
-            Some(search) => {
-                let mut found = Found::new();
-                let tail = self.find(&values, &search, &mut found);
-                let mut summary = search.summary(&found, sum, tail);
-                let ranked = std::array::from_fn(|number| search.ranked(&found, number));
-                self.refine(propagation, &values, ranked, &mut summary)?;
-                Some(summary)
-            }
-            None => None,
-        };
+        let summary = self.summary_of_kept(propagation, &values, (&counts, sum))?;
         Ok((self.evaluated(&mut tally, &counts, summary), tally.rechecks))
     }
 
@@ -362,10 +357,15 @@ impl Kernel {
 
     /// Pieces of the time grid, independent of the number of threads.
     fn chunks(&self, samples: usize) -> Vec<Range<usize>> {
+        self.pieces(0..samples)
+    }
+
+    fn pieces(&self, instants: Range<usize>) -> Vec<Range<usize>> {
         let length = (CHUNK_VALUES / self.scene.tiles.slots()).max(1);
-        (0..samples)
+        let end = instants.end;
+        instants
             .step_by(length)
-            .map(|first| first..(first + length).min(samples))
+            .map(|first| first..(first + length).min(end))
             .collect()
     }
 

@@ -77,6 +77,13 @@ const ROWS: &[Row] = &[
     ),
     Row(
         "optimize",
+        "shard",
+        "--out out SMALL SEARCH --seeds 2",
+        "--shard 1/2",
+        Out,
+    ),
+    Row(
+        "optimize",
         "certify",
         "--out out SMALL SEARCH --set search.satellites-per-plane=[5,7] --set search.inclination-step-deg=20 --set search.altitude-step-km=600",
         "--certify",
@@ -289,6 +296,20 @@ const ROWS: &[Row] = &[
         Stdout,
     ),
     Row("evaluate", "series", "DESIGN SMALL", "--series out", Out),
+    Row(
+        "evaluate",
+        "tile",
+        "DESIGN SMALL --out out",
+        "--tile 1/2",
+        Out,
+    ),
+    Row(
+        "evaluate",
+        "merge",
+        "evaluate DESIGN SMALL --tile 1/2 --out out | DESIGN SMALL",
+        "--merge out",
+        Status,
+    ),
     Row(
         "evaluate",
         "force",

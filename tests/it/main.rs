@@ -37,4 +37,5 @@ mod skies;
 mod study;
 mod sweep;
 mod tidy;
+mod tiles;
 mod trust;

@@ -179,6 +179,33 @@ fn seeds_stand_alone_too() {
     done(place, "report runs/seed-3");
 }
 
+/// Seeds by shards in any order, and joined, leave what one process leaves.
+#[test]
+fn seeds_of_shards_are_those_of_one_process() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let seeds = |further: &[&str]| {
+        let further = [&["--seeds", "3", "--format", "json"], further].concat();
+        let ran = ran(place, &optimize(&further));
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        ran.stdout
+    };
+    let whole = seeds(&["--out", "whole"]);
+    for (shard, made) in [("2/2", vec![2]), ("1/2", vec![1, 2, 3])] {
+        assert_eq!(seeds(&["--out", "parts", "--shard", shard]), "");
+        let names = made.iter().map(|seed| format!("seed-{seed}"));
+        let entries = fs::read_dir(place.join("parts")).unwrap();
+        let mut found: Vec<_> = entries
+            .map(|entry| entry.unwrap().file_name().display().to_string())
+            .collect();
+        found.sort();
+        assert_eq!(found, names.collect::<Vec<_>>());
+    }
+    assert_eq!(seeds(&["--out", "parts", "--resume"]), whole);
+    let [parts, whole] = ["parts", "whole"].map(|name| contents(&place.join(name)));
+    assert_eq!(parts, whole);
+}
+
 #[test]
 fn a_run_goes_on_with_its_own_files() {
     let directory = with_files();

@@ -216,6 +216,38 @@ fn another_sweep_is_refused_with_what_differs() {
     assert!(!place.join("store/table.parquet").exists());
 }
 
+/// A disk that takes no file of a certain size: the sweep says so, keeps what is done and leaves nothing half-written, and goes on to
+/// the same bytes once there is room.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_loses_only_what_was_not_done() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    assert_eq!(swept(place, "--as csv --out whole").status, 0);
+    let whole = fs::read(place.join("whole/table.csv")).unwrap();
+    // Chunks fit and the table does not; then not even the chunk.
+    for (chunk, done, cannot) in [(10, 8, "table.csv"), (72, 0, "chunks")] {
+        let store = format!("store-{chunk}");
+        let words = format!("sweep {SMALL} --as csv --chunk {chunk} --out {store}");
+        let program = assert_cmd::cargo::cargo_bin!("navwalker");
+        let limited = "trap '' XFSZ; ulimit -f 30; exec \"$0\" \"$@\"";
+        let mut shell = std::process::Command::new("sh");
+        shell.current_dir(place).args(["-c", limited]).arg(program);
+        let output = shell.args(words.split_whitespace()).output().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains("cannot write"), "{told}");
+        assert!(told.contains(cannot), "{told}");
+        let store = place.join(store);
+        assert_eq!(chunks(&store).len(), done, "{told}");
+        assert!(!store.join("table.csv").exists() && !store.join("index.json").exists());
+        let name = store.file_name().unwrap().display().to_string();
+        let resumed = run(place, &format!("sweep --resume --out {name} --quiet"));
+        assert_eq!(resumed.status, 0, "{}", resumed.stderr);
+        assert_eq!(fs::read(store.join("table.csv")).unwrap(), whole);
+    }
+}
+
 #[test]
 fn what_cannot_be_swept_is_refused() {
     let large = refused(&[

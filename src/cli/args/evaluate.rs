@@ -1,6 +1,6 @@
 //! Arguments of `evaluate`.
 
-use super::{ConstellationArgs, OutputFormat, StudyArgs};
+use super::{ConstellationArgs, OutputFormat, Shard, StudyArgs};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -73,9 +73,28 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) series: Option<PathBuf>,
 
+    /// Evaluate part I of N of the instants of one constellation, and write what is found to the file `--out`, for `--merge`.
+    ///
+    /// Tiles may be evaluated anywhere and in any order. What the file takes, the memory and the time are told before the work; the
+    /// memory does not grow with the instants. Accuracy in metres, windows, HDOP and failures cannot be cut into tiles.
+    #[arg(
+        long, value_name = "I/N", requires = "out",
+        conflicts_with_all = ["merge", "designs", "dops", "gnss_phases", "relative_nodes", "failures", "draws", "phases", "series", "force", "format"]
+    )]
+    pub(crate) tile: Option<Shard>,
+
+    /// Print the result of one constellation from the files of all its tiles, to the bit as without tiles; the scenario and the
+    /// constellation must be given as for `--tile`.
+    #[arg(
+        long, value_name = "FILE", num_args = 1..,
+        conflicts_with_all = ["designs", "dops", "gnss_phases", "relative_nodes", "failures", "draws", "phases", "series"]
+    )]
+    pub(crate) merge: Vec<PathBuf>,
+
     /// Write a run directory of these constellations, with copies of their files, which `report`, `plot`,
-    /// `export --run` and `validate --run` take like that of a search; `--pick` takes their names too.
-    #[arg(long, value_name = "DIR")]
+    /// `export --run` and `validate --run` take like that of a search; `--pick` takes their names too. With `--tile`, the file
+    /// of the tile.
+    #[arg(long, value_name = "PATH")]
     pub(crate) out: Option<PathBuf>,
 
     /// Replace a series directory that is not empty, or another run; what this program did not write is never

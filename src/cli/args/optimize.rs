@@ -1,6 +1,6 @@
 //! The arguments of `optimize`.
 
-use super::{OutputFormat, StudyArgs};
+use super::{OutputFormat, Shard, StudyArgs};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -28,6 +28,11 @@ pub(crate) struct OptimizeArgs {
     /// printed. All hypervolumes are at one reference point, which is printed too.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_SEEDS))]
     pub(crate) seeds: Option<u64>,
+
+    /// Run part I of N of the seeds, every N-th from the I-th, for a job array over one directory; the same command with
+    /// `--resume` in place of `--shard` makes the summary when all are done.
+    #[arg(long, value_name = "I/N", requires = "seeds", conflicts_with_all = ["certify", "from"])]
+    pub(crate) shard: Option<Shard>,
 
     /// Also sweep the search space on a grid of the scenario's steps and compare the fronts: both
     /// hypervolumes, the distance of each design, and what was missed.

@@ -82,8 +82,8 @@ impl std::fmt::Display for Shard {
 }
 
 impl Shard {
-    /// Whether a chunk is in the part, by its number from 0.
-    pub(crate) fn holds(self, chunk: usize) -> bool {
-        chunk % self.parts == self.part - 1
+    /// Whether a chunk or a seed is in the part, by its number from 0.
+    pub(crate) fn holds(self, number: usize) -> bool {
+        number % self.parts == self.part - 1
     }
 }

@@ -11,6 +11,7 @@ mod series;
 mod single;
 mod spares;
 mod table;
+mod tiles;
 
 use crate::cli::args::EvaluateArgs;
 use crate::cli::constellations::GivenConstellation;
@@ -31,24 +32,32 @@ use phases::GnssPhases;
 use print::Printer;
 use relative_nodes::RelativeNodeStudy;
 use series::SeriesDirectory;
+use tiles::MergedTiles;
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let study = Study::load(&args.study, &[])?.without(&args.study, &args.without)?;
     spares::require_use_of_draws(args, &study.scenario)?;
     let sourced = given(args, &study)?;
+    if let Some(tile) = args.tile {
+        return tiles::evaluate(args, &study, &sourced, tile);
+    }
     let list = args.designs.as_deref().map(DesignList::open).transpose()?;
     let run = GivenRun::open(args, &study, &sourced)?;
+    let tiles = MergedTiles::paths(args, &sourced)?;
     let given = sourced.into_iter().map(|one| one.constellation);
     let given: Vec<Constellation> = given.collect();
     let series = SeriesDirectory::new(args, &study, &given)?;
     let evaluator = study.evaluator()?;
+    let tiles = tiles
+        .map(|tiles| tiles.open(&study, &evaluator))
+        .transpose()?;
     limits::check_memory_of_tables(evaluator.setup(), args.dops, series.is_some())?;
     let phases = GnssPhases::new(args.gnss_phases, evaluator.setup())?;
     let nodes = RelativeNodeStudy::new(args.relative_nodes, &given)?;
     let deployment = DeploymentTable::read(args.phases.as_deref())?;
     let fixed = study.fixed()?;
     let goals = study.goals(fixed.as_ref());
-    let gnss_only = gnss_only(args, &goals, &evaluator)?;
+    let gnss_only = gnss_only(args, &goals, (&evaluator, tiles.as_ref()))?;
     let mut work = EvaluationContext {
         args,
         scenario: &study.scenario,
@@ -57,6 +66,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
         gnss_only,
         fixed: fixed.and_then(|fixed| fixed.files),
         evaluator: &evaluator,
+        tiles,
     };
     let mut entries = Vec::new();
     let mut ephemerides = Vec::new();
@@ -122,7 +132,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
 fn given(args: &EvaluateArgs, study: &Study) -> Result<Vec<GivenConstellation>> {
     constellations::require_files(&args.constellations)?;
     if !args.constellations.is_empty() || args.designs.is_some() {
-        let with_contents = args.out.is_some();
+        let with_contents = args.out.is_some() || !args.merge.is_empty();
         return constellations::resolve_given(&args.constellations, study, with_contents);
     }
     let named = constellations::given_by_scenario(study)?;
@@ -141,6 +151,8 @@ struct EvaluationContext<'a> {
     scenario: &'a Scenario,
     stamp: ScenarioStamp,
     evaluator: &'a Evaluator,
+    /// What was evaluated in tiles.
+    tiles: Option<MergedTiles>,
     goals: Goals,
     /// Satellites from files that are fixed in the search of the scenario, so that they are not new.
     fixed: Option<FileSatellites>,
@@ -152,7 +164,8 @@ impl EvaluationContext<'_> {
     /// A constellation with what is asked for.
     fn entry(&self, one: &Constellation, ephemeris: &Ephemeris) -> Result<ConstellationEntry> {
         let alone = self.gnss_only.as_ref().map(|of| of.metrics);
-        let (metrics, views, dops) = evaluated(self.args, self.evaluator, ephemeris)?;
+        let (metrics, views, dops) =
+            evaluated(self.args, (self.evaluator, self.tiles.as_ref()), ephemeris)?;
         let metrics = alone.map_or(metrics, |alone| metrics.with_gain_over(&alone));
         let goals = (&self.goals, self.fixed.as_ref());
         Ok(ConstellationEntry::new(one, (metrics, views), dops, goals))
@@ -162,9 +175,13 @@ impl EvaluationContext<'_> {
 /// The metrics with the satellites in view, and with `--dops` all dilutions of precision.
 fn evaluated(
     args: &EvaluateArgs,
-    evaluator: &Evaluator,
+    (evaluator, tiles): (&Evaluator, Option<&MergedTiles>),
     ephemeris: &Ephemeris,
 ) -> Result<(Metrics, ViewHistograms, Option<DopStatistics>)> {
+    if let Some(tiles) = tiles {
+        let (metrics, views) = tiles.merge(evaluator, ephemeris)?;
+        return Ok((metrics, views, None));
+    }
     let (metrics, views) = evaluator.evaluate_views(ephemeris)?;
     if !args.dops {
         return Ok((metrics, views, None));
@@ -177,14 +194,14 @@ fn evaluated(
 fn gnss_only(
     args: &EvaluateArgs,
     goals: &Goals,
-    evaluator: &Evaluator,
+    (evaluator, tiles): (&Evaluator, Option<&MergedTiles>),
 ) -> Result<Option<Assessment>> {
     let setup = evaluator.setup();
     if setup.gnss.is_empty() {
         return Ok(None);
     }
     let none = Ephemeris::new(setup.grid, Vec::new());
-    let (metrics, views, dops) = evaluated(args, evaluator, &none)?;
+    let (metrics, views, dops) = evaluated(args, (evaluator, tiles), &none)?;
     let metrics = metrics.with_gain_over(&metrics);
     Ok(Some(Assessment::new(
         CountedSatellites::default(),

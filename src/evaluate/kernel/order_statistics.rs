@@ -47,6 +47,11 @@ impl Places {
         self.unsolved as usize + 1
     }
 
+    /// Whether it can be a value of a sample.
+    pub(super) fn admits(self, value: f32) -> bool {
+        value == UNSOLVED || value > 0.0 && self.of(value) < self.unsolved
+    }
+
     /// The place of a value; larger values have the same or a later one.
     #[inline(always)]
     fn of(self, value: f32) -> u32 {

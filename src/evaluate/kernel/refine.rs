@@ -8,6 +8,7 @@ use super::Kernel;
 use super::instructions::Work;
 use super::lanes::Lanes;
 use super::limits::{Limits, SingleLimits};
+use super::order_statistics::{Counts, Found, RankSearch};
 use super::propagation::Propagation;
 use super::tiles::Tile;
 use crate::ephemeris::EphemerisError;
@@ -121,8 +122,26 @@ impl<const N: usize> Work for Surround<'_, N> {
 }
 
 impl Kernel {
+    /// The statistics of stored values, from their counts and their sum; `None` if none is solved.
+    pub(super) fn summary_of_kept(
+        &self,
+        propagation: &Propagation<'_>,
+        values: &[Lanes<f32>],
+        (counts, sum): (&Counts, f64),
+    ) -> Result<Option<Summary>, EphemerisError> {
+        let Some(search) = RankSearch::new(counts, self.setup.metrics.cvar_level) else {
+            return Ok(None);
+        };
+        let mut found = Found::new();
+        let tail = self.find(values, &search, &mut found);
+        let mut summary = search.summary(&found, sum, tail);
+        let ranked = std::array::from_fn(|number| search.ranked(&found, number));
+        self.refine(propagation, values, ranked, &mut summary)?;
+        Ok(Some(summary))
+    }
+
     /// Recomputes the order statistics in f64.
-    pub(super) fn refine(
+    fn refine(
         &self,
         propagation: &Propagation<'_>,
         values: &[Lanes<f32>],

@@ -339,6 +339,17 @@ impl Kernel {
         ViewTally::new(&self.scene.tiles.tiles, histograms)
     }
 
+    /// Adds an instant of which only the values are known: outages, and no satellites in view.
+    pub(super) fn tally_values(&self, values: &[Lanes<f32>], to: &mut ViewTally<'_>) {
+        let available = self.scene.limits.available.single();
+        let instants = to.instants;
+        for ((tile, tally), pdop) in to.tiles.iter().zip(&mut to.of_tiles).zip(values) {
+            let out = out_of_service(tile, pdop, available);
+            tally.outages.add(&out, instants);
+        }
+        to.instants += 1;
+    }
+
     pub(super) fn tally_instant(&self, instant: &Evaluating<'_>, to: &mut ViewTally<'_>) {
         self.instructions.run(TallySample {
             outcome: instant.outcome,
@@ -347,6 +358,16 @@ impl Kernel {
             to,
         });
     }
+}
+
+/// 1 for each point of a tile without service: unsolved, or above the threshold.
+#[inline(always)]
+fn out_of_service(tile: &Tile, pdop: &Lanes<f32>, available: f32) -> Lanes<u32> {
+    let mut out = tile.weights.member;
+    for (out, &pdop) in out.0.iter_mut().zip(&pdop.0) {
+        *out &= 1 - u32::from(pdop <= available);
+    }
+    out
 }
 
 /// Counts one instant.
@@ -368,13 +389,11 @@ impl Work for TallySample<'_, '_> {
         for (number, (tile, tally)) in tiles {
             let (pdop, leo) = (&self.outcome.pdop[number], &self.outcome.visible[number]);
             let gnss = self.fixed.tile(number).visible;
-            let (mut all, mut out) = (*leo, tile.weights.member);
+            let mut all = *leo;
             for (all, &gnss) in all.0.iter_mut().zip(gnss) {
                 *all += u32::from(gnss);
             }
-            for (out, &pdop) in out.0.iter_mut().zip(&pdop.0) {
-                *out &= 1 - u32::from(pdop <= self.available);
-            }
+            let out = out_of_service(tile, pdop, self.available);
             tally.outages.add(&out, to.instants);
             tally.leo.add(leo, to.recent);
             tally.all.add(&all, to.recent);

@@ -25,6 +25,7 @@ use proptest::prelude::*;
 mod decisions;
 mod limits;
 mod propagated;
+mod tiled;
 
 fn relative(ours: Option<f64>, theirs: Option<f64>) -> f64 {
     match (ours, theirs) {

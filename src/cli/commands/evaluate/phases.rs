@@ -38,10 +38,10 @@ impl GnssPhases {
         let mut alone: Vec<Metrics> = work.gnss_only.iter().map(|of| of.metrics).collect();
         for setup in &self.setups {
             let evaluator = Evaluator::new(setup.clone())?;
-            let gnss_only = evaluated(work.args, &evaluator, &none)?.0;
+            let gnss_only = evaluated(work.args, (&evaluator, None), &none)?.0;
             alone.push(gnss_only.with_gain_over(&gnss_only));
             for (found, ephemeris) in found.iter_mut().zip(ephemerides) {
-                let metrics = evaluated(work.args, &evaluator, ephemeris)?.0;
+                let metrics = evaluated(work.args, (&evaluator, None), ephemeris)?.0;
                 found.push(metrics.with_gain_over(&gnss_only));
             }
         }

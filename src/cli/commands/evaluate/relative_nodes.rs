@@ -39,7 +39,7 @@ impl RelativeNodeStudy {
             for one in later {
                 let setup = work.evaluator.setup();
                 let ephemeris = constellations::propagate_member(one, setup)?;
-                let metrics = evaluated(work.args, work.evaluator, &ephemeris)?.0;
+                let metrics = evaluated(work.args, (work.evaluator, None), &ephemeris)?.0;
                 found.push(alone.map_or(metrics, |alone| metrics.with_gain_over(&alone)));
             }
             if let Some(nodes) = &mut entry.evaluated.relative_nodes {

@@ -10,6 +10,7 @@ use crate::cli::{Status, coincidence, files, output};
 use crate::evaluate::Evaluator;
 use crate::report::SeedsResult;
 use crate::run::PROVENANCE;
+use crate::units::counted;
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -50,7 +51,9 @@ pub(super) fn run(args: &OptimizeArgs, count: u64) -> Result<Status> {
         Sweep::Interrupted => return Ok(Status::Interrupted),
     };
     let mut results = Vec::new();
-    for seed in first..=last {
+    let own = |number: usize| args.shard.is_none_or(|shard| shard.holds(number));
+    let seeds = (0..).zip(first..=last).filter(|(number, _)| own(*number));
+    for (_, seed) in seeds {
         study.scenario.optimizer.seed = seed;
         let place = out.join(format!("{RUN}{seed}"));
         let mut directory = open(args, &study, &place)?;
@@ -66,6 +69,13 @@ pub(super) fn run(args: &OptimizeArgs, count: u64) -> Result<Status> {
             return Ok(Status::Interrupted);
         }
         results.push(result);
+    }
+    if let Some(shard) = args.shard {
+        output::hint(&format!(
+            "\n{} of shard {shard} done\nwhen all are: the same command with --resume in place of --shard",
+            counted(results.len(), "seed")
+        ));
+        return Ok(Status::Done);
     }
     let objectives = &study.scenario.objectives.minimize;
     let result =
