@@ -88,12 +88,12 @@ pub(crate) fn followed<T>(progress: &SharedProgress, work: impl FnOnce() -> T) -
 /// What shows the progress of some work.
 enum Display {
     Bar(ProgressBar),
-    Lines(Mutex<Lines>),
+    Lines(Mutex<LogLines>),
     Nothing,
 }
 
 /// Progress as lines of a log.
-struct Lines {
+struct LogLines {
     /// What is counted, such as `designs`.
     counted: &'static str,
     started: Instant,
@@ -104,7 +104,7 @@ struct Lines {
     message: String,
 }
 
-impl Lines {
+impl LogLines {
     /// The line to print now, if it is time for one.
     fn line(&mut self, elapsed: Duration) -> Option<String> {
         if elapsed < self.due {
@@ -142,7 +142,7 @@ impl Display {
                 }
                 Self::Bar(bar)
             }
-            ProgressPlace::Log => Self::Lines(Mutex::new(Lines {
+            ProgressPlace::Log => Self::Lines(Mutex::new(LogLines {
                 counted,
                 started: Instant::now(),
                 due: BETWEEN_LINES,
@@ -154,7 +154,7 @@ impl Display {
         }
     }
 
-    fn change(&self, in_bar: impl FnOnce(&ProgressBar), in_lines: impl FnOnce(&mut Lines)) {
+    fn change(&self, in_bar: impl FnOnce(&ProgressBar), in_lines: impl FnOnce(&mut LogLines)) {
         match self {
             Self::Bar(bar) => in_bar(bar),
             Self::Lines(lines) => {
@@ -319,7 +319,7 @@ mod tests {
 
     #[test]
     fn a_log_has_a_line_every_ten_seconds_and_none_of_short_work() {
-        let mut lines = Lines {
+        let mut lines = LogLines {
             counted: "designs",
             started: Instant::now(),
             due: BETWEEN_LINES,

@@ -1,5 +1,7 @@
 //! Run directories: results, and the checkpoint that a search resumes from.
 
+mod held_results;
+
 use crate::cli::args::MemberPick;
 use crate::cli::interrupt::Removed;
 use crate::cli::provenance::provenance;
@@ -15,7 +17,7 @@ use crate::run::{
 };
 use crate::scenario::Scenario;
 use anyhow::{Context, Result, bail};
-use serde::Deserialize;
+use held_results::HeldResults;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
@@ -137,24 +139,6 @@ pub(crate) enum Placed {
         /// Generations behind the results that are kept.
         generations: u64,
     },
-}
-
-/// The part of [`FRONT_JSON`] that says how far its search got.
-#[derive(Deserialize)]
-struct HeldResults {
-    generations: [u64; 2],
-}
-
-impl HeldResults {
-    /// Those in a directory, if any can be read.
-    fn of(directory: &Path) -> Option<Self> {
-        let bytes = files::read_run(&directory.join(FRONT_JSON)).ok()?;
-        serde_json::from_slice(&bytes).ok()
-    }
-
-    fn is_finished(&self) -> bool {
-        self.generations[0] >= self.generations[1]
-    }
 }
 
 impl RunDirectory {

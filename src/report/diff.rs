@@ -22,7 +22,8 @@ pub struct Tolerance {
 impl Tolerance {
     fn allows(self, a: f64, b: f64) -> bool {
         // Infinities are equal to themselves, and their difference is no number.
-        a == b || (b - a).abs() <= self.absolute + self.relative * a.abs().max(b.abs())
+        let apart = (b - a).abs();
+        a == b || apart.is_finite() && apart <= self.absolute + self.relative * a.abs().max(b.abs())
     }
 }
 

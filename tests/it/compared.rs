@@ -369,7 +369,13 @@ fn given_designs_make_a_run() {
     files.sort();
     assert_eq!(
         files,
-        ["front.csv", "front.json", "run.json", "scenario.toml"]
+        [
+            "front.csv",
+            "front.json",
+            "provenance.json",
+            "run.json",
+            "scenario.toml"
+        ]
     );
     let front = fs::read_to_string(place.join("run/front.json")).unwrap();
     let front: Value = serde_json::from_str(&front).unwrap();

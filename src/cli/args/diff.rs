@@ -13,11 +13,11 @@ pub(crate) struct DiffArgs {
     pub(crate) b: PathBuf,
 
     /// Numbers that differ by at most this, in their own unit, count as equal.
-    #[arg(long, value_name = "VALUE", default_value = "0", value_parser = tolerance)]
+    #[arg(long, value_name = "VALUE", default_value = "0", allow_negative_numbers = true, value_parser = tolerance)]
     pub(crate) absolute: f64,
 
     /// Numbers that differ by at most this share of the larger one count as equal.
-    #[arg(long, value_name = "SHARE", default_value = "0", value_parser = tolerance)]
+    #[arg(long, value_name = "SHARE", default_value = "0", allow_negative_numbers = true, value_parser = tolerance)]
     pub(crate) relative: f64,
 
     /// Output format.

@@ -241,8 +241,8 @@ mod tests {
             places("front.json", front),
             [
                 "front.design.notation [delta:55:6/3/1@925] delta:55:6/3/1@925",
-                "front.metrics.mean_pdop [delta:55:6/3/1@925] 1.5",
                 "front.metrics.gain [delta:55:6/3/1@925] none",
+                "front.metrics.mean_pdop [delta:55:6/3/1@925] 1.5",
             ]
         );
         // Two of one name are told apart by their place.
