@@ -126,7 +126,7 @@ def worst(differences):
 def check_files(directory, manifest, report):
     listed = {entry["path"]: entry["sha256"] for entry in manifest["files"]}
     here = {path.relative_to(directory).as_posix() for path in directory.rglob("*") if path.is_file()}
-    report.same("files beside the manifest", sorted(here - {"manifest.json"}) == sorted(listed), True)
+    report.same("files beside the manifest", sorted(here - {"manifest.json", "provenance.json"}) == sorted(listed), True)
     wrong = [
         path for path, digest in listed.items()
         if hashlib.sha256((directory / path).read_bytes()).hexdigest() != digest
