@@ -19,7 +19,7 @@ pub mod typed_columns;
 mod validation;
 
 pub use columns::{metric_columns, metric_values};
-pub use provenance::{PROVENANCE, Provenance};
+pub use provenance::{PROVENANCE, ResultProvenance};
 pub use results::{
     Certificate, DesignSummary, Diagnostic, FixedSummary, FrontMember, Hypervolume, MemberFiles,
     Missed, MissedShell, OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,

@@ -9,7 +9,7 @@ pub(crate) use staging::{is_staged, lock};
 
 use crate::cli::interrupt::{self, Removed};
 use crate::cli::output;
-use crate::run::{PROVENANCE, Provenance};
+use crate::run::{PROVENANCE, ResultProvenance};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -190,7 +190,7 @@ pub(crate) fn write_all(directory: &Path, files: &[(String, Vec<u8>)]) -> Result
 }
 
 /// Writes [`PROVENANCE`] in a directory.
-pub(crate) fn write_provenance(directory: &Path, provenance: &Provenance) -> Result<()> {
+pub(crate) fn write_provenance(directory: &Path, provenance: &ResultProvenance) -> Result<()> {
     let json = crate::printable::json(provenance)? + "\n";
     write_atomically(&directory.join(PROVENANCE), json.as_bytes())
 }
@@ -242,7 +242,7 @@ impl StagedDirectory {
 
     /// Moves the directory, with where it comes from, into place unless another process has put one there
     /// meanwhile, which is kept.
-    pub(crate) fn commit_if_vacant(mut self, provenance: &Provenance) -> Result<()> {
+    pub(crate) fn commit_if_vacant(mut self, provenance: &ResultProvenance) -> Result<()> {
         write_provenance(self.path(), provenance)?;
         let (staging, place) = (self.staging.path(), self.place.as_path());
         let _held = interrupt::held();
@@ -258,7 +258,7 @@ impl StagedDirectory {
     }
 
     /// Moves the directory, with where it comes from, into place, replacing what is there.
-    pub(crate) fn commit(self, provenance: &Provenance) -> Result<()> {
+    pub(crate) fn commit(self, provenance: &ResultProvenance) -> Result<()> {
         self.commit_keeping(&[], provenance).map(drop)
     }
 
@@ -267,7 +267,7 @@ impl StagedDirectory {
     pub(crate) fn commit_keeping(
         mut self,
         kept: &[OsString],
-        provenance: &Provenance,
+        provenance: &ResultProvenance,
     ) -> Result<Option<File>> {
         write_provenance(self.path(), provenance)?;
         let (staging, place) = (self.staging.path(), self.place.as_path());
@@ -442,7 +442,7 @@ mod tests {
         fs::write(staged.path().join("result"), "ours").unwrap();
         fs::write(&place, "mine").unwrap();
         let error = staged
-            .commit(&Provenance::new(None, Vec::new()))
+            .commit(&ResultProvenance::new(None, Vec::new()))
             .unwrap_err()
             .to_string();
         let (_, kept) = error.split_once("; the result is in ").unwrap();

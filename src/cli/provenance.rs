@@ -1,6 +1,6 @@
 //! The command that this thread runs, as it goes into the provenance of what it writes.
 
-use crate::run::{Provenance, ScenarioStamp};
+use crate::run::{ResultProvenance, ScenarioStamp};
 use std::cell::RefCell;
 use std::ffi::OsString;
 use std::path::Path;
@@ -28,8 +28,8 @@ pub(super) fn set_command(args: &[OsString]) {
 }
 
 /// The provenance of results of these scenarios, made by the command of this thread.
-pub(crate) fn provenance(scenarios: Vec<ScenarioStamp>) -> Provenance {
-    Provenance::new(COMMAND.with_borrow(Clone::clone), scenarios)
+pub(crate) fn provenance(scenarios: Vec<ScenarioStamp>) -> ResultProvenance {
+    ResultProvenance::new(COMMAND.with_borrow(Clone::clone), scenarios)
 }
 
 /// The words of a command that its results depend on. Of paths only the last name is kept: results hold

@@ -13,7 +13,7 @@ use crate::run::checkpoint::{self, Identity, RecordLog};
 use crate::run::evaluations::EVALUATIONS_FILES;
 use crate::run::{
     CHECKPOINT, CHECKPOINT_LOG, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
-    PREVIOUS_CHECKPOINT, Provenance, SCENARIO, VALIDATION, result_files,
+    PREVIOUS_CHECKPOINT, ResultProvenance, SCENARIO, VALIDATION, result_files,
 };
 use crate::scenario::Scenario;
 use anyhow::{Context, Result, bail};
@@ -59,7 +59,7 @@ fn held(directory: &Path) -> Result<Option<File>> {
 pub(crate) struct RunDirectory {
     path: PathBuf,
     identity: Identity,
-    provenance: Provenance,
+    provenance: ResultProvenance,
     /// The initial contents of the run: the scenario, copies of its files, the manifest.
     first_files: Vec<(String, Vec<u8>)>,
     /// The checkpoints in the directory when it was opened.

@@ -5,10 +5,10 @@ mod values;
 
 pub use values::{ResultFile, ResultFileError};
 
-use crate::run::Provenance;
+use crate::run::ResultProvenance;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
-use values::{Leaf, Place};
+use values::{Leaf, ValuePlace};
 
 /// How far two numbers may be apart that count as equal: `absolute + relative × the larger magnitude`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -33,7 +33,7 @@ pub struct Side {
     /// The files.
     pub files: BTreeMap<String, ResultFile>,
     /// Where they come from.
-    pub provenance: Option<Provenance>,
+    pub provenance: Option<ResultProvenance>,
 }
 
 /// A value that is not the same on both sides.
@@ -59,7 +59,7 @@ pub struct Moved {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Diff {
     /// Where A and B come from.
-    pub provenance: [Option<Provenance>; 2],
+    pub provenance: [Option<ResultProvenance>; 2],
     /// What counts as equal.
     pub tolerance: Tolerance,
     /// Values compared, by file.
@@ -133,9 +133,9 @@ impl Diff {
             return differs;
         };
         let before = self.moved.len();
-        let of_b: BTreeMap<&Place, &Leaf> =
+        let of_b: BTreeMap<&ValuePlace, &Leaf> =
             b_values.iter().map(|(place, leaf)| (place, leaf)).collect();
-        let of_a: BTreeSet<&Place> = a_values.iter().map(|(place, _)| place).collect();
+        let of_a: BTreeSet<&ValuePlace> = a_values.iter().map(|(place, _)| place).collect();
         for (place, leaf) in &a_values {
             self.value(name, place, Some(leaf), of_b.get(place).copied());
         }
@@ -147,7 +147,7 @@ impl Diff {
         self.moved.len() > before
     }
 
-    fn value(&mut self, file: &str, place: &Place, a: Option<&Leaf>, b: Option<&Leaf>) {
+    fn value(&mut self, file: &str, place: &ValuePlace, a: Option<&Leaf>, b: Option<&Leaf>) {
         let numbers = match (a, b) {
             (Some(Leaf::Number(a, _)), Some(Leaf::Number(b, _))) => Some((*a, *b)),
             _ => None,

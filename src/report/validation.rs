@@ -4,7 +4,7 @@ mod appendix;
 
 pub use appendix::validation_markdown;
 #[cfg(feature = "figures")]
-pub(crate) use appendix::{Headline, Section, headline, sections};
+pub(crate) use appendix::{AppendixSection, Headline, headline, sections};
 
 use super::{Align, Table};
 use crate::keyword::Keyword;

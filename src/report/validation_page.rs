@@ -2,7 +2,7 @@
 
 use super::figures::draw::{DrawError, Sheet, inline_svg};
 use super::figures::{Chart, residual_figures};
-use super::validation::{Headline, Section, headline, sections};
+use super::validation::{AppendixSection, Headline, headline, sections};
 use crate::run::ValidateResult;
 use askama::Template;
 use std::io::Write;
@@ -38,8 +38,8 @@ struct PageSection {
     remarks: Vec<String>,
 }
 
-impl From<Section> for PageSection {
-    fn from(section: Section) -> Self {
+impl From<AppendixSection> for PageSection {
+    fn from(section: AppendixSection) -> Self {
         let are_numbers: Vec<bool> = section.table.are_numbers().collect();
         let headings = section.table.headings().map(str::to_owned);
         let rows = section.table.cells();

@@ -12,7 +12,7 @@ pub const PROVENANCE: &str = "provenance.json";
 /// The command has neither output place nor what only changes how it ran (threads, resuming), so the same
 /// work has the same provenance on the same platform.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Provenance {
+pub struct ResultProvenance {
     /// The name of this program.
     pub program: String,
     /// Its version.
@@ -29,7 +29,7 @@ pub struct Provenance {
     pub scenarios: Vec<ScenarioStamp>,
 }
 
-impl Provenance {
+impl ResultProvenance {
     /// That of this process for a command and its scenarios.
     #[must_use]
     pub fn new(command: Option<Vec<String>>, scenarios: Vec<ScenarioStamp>) -> Self {

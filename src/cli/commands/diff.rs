@@ -7,7 +7,7 @@ use crate::cli::sweep_store::SweepStore;
 use crate::cli::{Status, files, output};
 use crate::report::{Diff, ResultFile, Side, Tolerance, records_csv};
 use crate::run::sweep::SWEEP_JSON;
-use crate::run::{CHECKPOINT, MANIFEST, PROVENANCE, Provenance, SCENARIO};
+use crate::run::{CHECKPOINT, MANIFEST, PROVENANCE, ResultProvenance, SCENARIO};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
 use std::fs;
@@ -67,7 +67,7 @@ fn side(path: &Path) -> Result<Side> {
     read().with_context(|| format!("cannot read {}", shown_path(path)))
 }
 
-fn provenance(directory: &Path) -> Result<Option<Provenance>> {
+fn provenance(directory: &Path) -> Result<Option<ResultProvenance>> {
     let path = directory.join(PROVENANCE);
     if !path.exists() {
         return Ok(None);

@@ -2,6 +2,7 @@
 //! one that the processor supports is selected at run time.
 
 use multiversion::multiversion;
+use multiversion::target::match_target;
 use std::fmt;
 
 /// The vector instructions that the kernel uses.
@@ -54,7 +55,7 @@ impl InstructionSet {
         match self {
             Self::Avx512 => avx512(work),
             Self::Avx2 => avx2(work),
-            Self::Baseline => work.run(),
+            Self::Baseline => baseline(work),
         }
     }
 }
@@ -79,10 +80,22 @@ pub(super) trait Work {
 
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl+bmi1+bmi2+lzcnt"))]
 fn avx512<W: Work>(work: W) -> W::Output {
-    work.run()
+    match_target! {
+        "x86_64+avx512f+avx512bw+avx512dq+avx512vl+bmi1+bmi2+lzcnt" => work.run(),
+        _ => baseline(work),
+    }
 }
 
 #[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt"))]
 fn avx2<W: Work>(work: W) -> W::Output {
+    match_target! {
+        "x86_64+avx2+bmi1+bmi2+lzcnt" => work.run(),
+        _ => baseline(work),
+    }
+}
+
+/// Apart from the two above, which would otherwise hold a copy of it each for processors without their instructions.
+#[inline(never)]
+fn baseline<W: Work>(work: W) -> W::Output {
     work.run()
 }

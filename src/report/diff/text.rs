@@ -3,7 +3,7 @@
 use super::{Diff, Moved};
 use crate::report::shown::significant;
 use crate::report::{Align, Table};
-use crate::run::Provenance;
+use crate::run::ResultProvenance;
 use crate::units::counted;
 use std::fmt::Write;
 
@@ -127,7 +127,7 @@ fn shortened(value: &str) -> String {
 }
 
 /// What the two provenances do not share.
-fn origins(a: &Provenance, b: &Provenance) -> Table {
+fn origins(a: &ResultProvenance, b: &ResultProvenance) -> Table {
     let mut table = Table::new(&[("", Align::Left), ("A", Align::Left), ("B", Align::Left)]);
     for ((name, a), (_, b)) in facts(a).into_iter().zip(facts(b)) {
         if a != b {
@@ -137,7 +137,7 @@ fn origins(a: &Provenance, b: &Provenance) -> Table {
     table
 }
 
-fn facts(of: &Provenance) -> [(&'static str, String); 6] {
+fn facts(of: &ResultProvenance) -> [(&'static str, String); 6] {
     let scenarios = of.scenarios.iter().map(|one| {
         let hash = one.hash.get(..8).unwrap_or(&one.hash);
         format!("{} ({hash})", one.name)

@@ -80,10 +80,10 @@ impl ResultFile {
     }
 
     /// Its values with their places; `None` if it is compared by its bytes.
-    pub(super) fn values(&self) -> Option<Vec<(Place, Leaf)>> {
+    pub(super) fn values(&self) -> Option<Vec<(ValuePlace, Leaf)>> {
         let mut values = Vec::new();
         match self {
-            Self::Tree(tree) => add(tree, &Place::default(), &mut values),
+            Self::Tree(tree) => add(tree, &ValuePlace::default(), &mut values),
             Self::Table(columns, rows) => add_rows(columns, rows, &mut values),
             Self::Other(_) => return None,
         }
@@ -93,13 +93,13 @@ impl ResultFile {
 
 /// Where a value is.
 #[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Place {
+pub(super) struct ValuePlace {
     pub(super) quantity: String,
     /// What it is of, from the outermost list on.
     pub(super) of: String,
 }
 
-impl Place {
+impl ValuePlace {
     fn key(&self, key: &str) -> Self {
         Self {
             quantity: joined(&self.quantity, ".", key),
@@ -148,10 +148,10 @@ impl fmt::Display for Leaf {
     }
 }
 
-fn add(tree: &Value, place: &Place, values: &mut Vec<(Place, Leaf)>) {
+fn add(tree: &Value, place: &ValuePlace, values: &mut Vec<(ValuePlace, Leaf)>) {
     match tree {
         Value::Object(members) => {
-            let is_outermost = *place == Place::default();
+            let is_outermost = *place == ValuePlace::default();
             let counted = members
                 .iter()
                 .filter(|(key, _)| !(is_outermost && IDENTITY.contains(&key.as_str())));
@@ -200,7 +200,7 @@ fn are_different(keys: &[String]) -> bool {
     keys.iter().collect::<BTreeSet<_>>().len() == keys.len()
 }
 
-fn add_rows(columns: &[String], rows: &[Vec<String>], values: &mut Vec<(Place, Leaf)>) {
+fn add_rows(columns: &[String], rows: &[Vec<String>], values: &mut Vec<(ValuePlace, Leaf)>) {
     let keys = KEYS.iter().find_map(|key| {
         let at = columns.iter().position(|column| column == key)?;
         let keys: Vec<String> = rows.iter().map(|row| row[at].clone()).collect();
@@ -216,7 +216,7 @@ fn add_rows(columns: &[String], rows: &[Vec<String>], values: &mut Vec<(Place, L
         values.extend(cells.map(|(column, cell)| {
             let quantity = column.clone();
             let of = of.clone();
-            (Place { quantity, of }, Leaf::of(cell))
+            (ValuePlace { quantity, of }, Leaf::of(cell))
         }));
     }
 }

@@ -23,7 +23,7 @@ pub(crate) struct Headline {
 }
 
 /// A part of the appendix.
-pub(crate) struct Section {
+pub(crate) struct AppendixSection {
     /// Its heading.
     pub(crate) title: String,
     /// What the table shows.
@@ -51,11 +51,11 @@ pub(crate) fn headline(result: &ValidateResult) -> Headline {
 }
 
 /// The parts that a result has.
-pub(crate) fn sections(result: &ValidateResult) -> Vec<Section> {
+pub(crate) fn sections(result: &ValidateResult) -> Vec<AppendixSection> {
     let findings = &result.findings;
     let mut sections = Vec::new();
     if !findings.budget.is_empty() {
-        sections.push(Section {
+        sections.push(AppendixSection {
             title: "Error budget".to_owned(),
             caption: "Second minus first, in the radial, in-track and cross-track axes of the first.",
             table: budget_table(&findings.budget),
@@ -63,14 +63,14 @@ pub(crate) fn sections(result: &ValidateResult) -> Vec<Section> {
         });
     }
     if !findings.sweep.is_empty() {
-        sections.push(Section {
+        sections.push(AppendixSection {
             title: "Over inclination and altitude".to_owned(),
             caption: "Circular patterns of 12 satellites; cases as in the budget. The last column is the largest fraction of a gate.",
             table: sweep_table(&findings.sweep),
             remarks: Vec::new(),
         });
     }
-    sections.push(Section {
+    sections.push(AppendixSection {
         title: "Checks".to_owned(),
         caption: "A check without a gate is reported for information (info) and counts neither as passed nor as failed. \
                   The last column names errors that were planted in the library to see the gate fail.",
@@ -79,14 +79,14 @@ pub(crate) fn sections(result: &ValidateResult) -> Vec<Section> {
     });
     let residuals = distributions(result);
     if !residuals.is_empty() {
-        sections.push(Section {
+        sections.push(AppendixSection {
             title: "Residuals".to_owned(),
             caption: "Magnitudes, and the input that gives the largest.",
             table: distribution_table(&residuals),
             remarks: Vec::new(),
         });
     }
-    sections.extend(findings.files.iter().map(|comparison| Section {
+    sections.extend(findings.files.iter().map(|comparison| AppendixSection {
         title: format!("File {}", comparison.source),
         caption: "The satellites that differ most.",
         table: satellite_table(comparison),

@@ -9,7 +9,7 @@ use crate::ephemeris::Ephemeris;
 use crate::evaluate::Evaluator;
 use crate::exchange::constellation::Constellation;
 use crate::report::{outages_csv, records_csv};
-use crate::run::Provenance;
+use crate::run::ResultProvenance;
 use anyhow::Result;
 use std::collections::BTreeSet;
 use std::fs;
@@ -24,7 +24,7 @@ const LONGEST_NAME: usize = 80;
 /// The directory of `--series`, not yet in its place.
 pub(super) struct SeriesDirectory {
     staged: StagedDirectory,
-    provenance: Provenance,
+    provenance: ResultProvenance,
     place: PathBuf,
     /// The folder of each constellation; for a single one the directory itself.
     folders: Vec<String>,
