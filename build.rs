@@ -24,8 +24,17 @@ fn commit() -> Option<String> {
     if Path::new(&top).canonicalize().ok()? != Path::new(&here).canonicalize().ok()? {
         return None;
     }
-    let log = git(&["rev-parse", "--git-path", "logs/HEAD"])?;
-    for watched in [log.as_str(), "src", "data", "Cargo.toml", "Cargo.lock"] {
+    let moves = [
+        git(&["rev-parse", "--git-path", "logs/HEAD"])?,
+        git(&["rev-parse", "--git-path", "HEAD"])?,
+    ];
+    let sources = ["src", "data", "Cargo.toml", "Cargo.lock"].map(str::to_owned);
+    // A watched file that is missing would have everything built again each time.
+    for watched in moves
+        .into_iter()
+        .chain(sources)
+        .filter(|path| Path::new(path).exists())
+    {
         println!("cargo::rerun-if-changed={watched}");
     }
     let commit = git(&["rev-parse", "HEAD"])?;
