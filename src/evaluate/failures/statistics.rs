@@ -19,6 +19,15 @@ const TRAILING_BITS: u32 = 42;
 const WANTED: usize = 5;
 const VALUE_AT_RISK: usize = 4;
 
+/// Marks the buckets beyond that of the value-at-risk.
+const BEYOND: u8 = 1 << WANTED;
+
+/// A weight in f64. That of a signed number is one instruction everywhere; a weight is below 2⁶².
+#[inline(always)]
+fn real(weight: u64) -> f64 {
+    weight as i64 as f64
+}
+
 /// All samples with all satellites.
 pub(super) struct Whole<'a> {
     evaluator: &'a Evaluator,
@@ -137,8 +146,10 @@ impl Buckets {
 /// Memory for one set after the other.
 pub(super) struct Scratch {
     weights: Vec<u64>,
-    /// A bit for each rank that is wanted of a bucket.
+    /// A bit for each rank that is wanted of a bucket, and [`BEYOND`]; none for the place after all buckets.
     wanted: Vec<u8>,
+    /// The buckets that each sample that changes leaves and arrives in; the place after all buckets if it is unsolved.
+    moved: Vec<(u32, u32)>,
     /// Samples whose availability changes, and whether one does, point by point.
     turned: Vec<u32>,
     is_turned: Vec<bool>,
@@ -150,7 +161,8 @@ impl Scratch {
     pub(super) fn new(whole: &Whole<'_>) -> Self {
         Self {
             weights: Vec::new(),
-            wanted: vec![0; whole.buckets.weights.len()],
+            wanted: vec![0; whole.buckets.weights.len() + 1],
+            moved: Vec::new(),
             turned: Vec::new(),
             is_turned: vec![false; whole.samples.len()],
             values: Vec::new(),
@@ -239,6 +251,8 @@ impl<'a> Whole<'a> {
         let (mut leo, mut all) = (self.leo.clone(), self.all.clone());
         let mut totals = self.totals;
         scratch.weights.clone_from(&self.buckets.weights);
+        let unsolved = scratch.weights.len() as u32;
+        scratch.moved.clear();
         // Sums in variables of their own stay in registers.
         let (mut sum, mut number, mut solved) = (totals.sum, totals.number, totals.solved);
         let weights = scratch.weights.as_mut_slice();
@@ -249,18 +263,24 @@ impl<'a> Whole<'a> {
             let in_all = visible + u32::from(whole.gnss_visible);
             leo.shift(visible, visible.saturating_sub(one.missing), weight);
             all.shift(in_all, in_all.saturating_sub(one.missing), weight);
+            let (mut from, mut to) = (unsolved, unsolved);
             if old < f64::INFINITY {
-                weights[self.buckets.of(old)] -= weight;
+                let bucket = self.buckets.of(old);
+                weights[bucket] -= weight;
+                from = bucket as u32;
                 number -= 1;
                 solved -= weight;
-                sum -= weight as f64 * old;
+                sum -= real(weight) * old;
             }
             if new < f64::INFINITY {
-                weights[self.buckets.of(new)] += weight;
+                let bucket = self.buckets.of(new);
+                weights[bucket] += weight;
+                to = bucket as u32;
                 number += 1;
                 solved += weight;
-                sum += weight as f64 * new;
+                sum += real(weight) * new;
             }
+            scratch.moved.push((from, to));
             let (was_available, is_available) = (old <= available_up_to, new <= available_up_to);
             if was_available != is_available {
                 scratch.turned.push(one.sample);
@@ -363,48 +383,38 @@ impl<'a> Whole<'a> {
         scratch: &mut Scratch,
     ) -> ([BucketMoves; WANTED], f64) {
         let mut moves: [BucketMoves; WANTED] = Default::default();
-        for (number, one) in wanted.iter().enumerate() {
-            scratch.wanted[one.bucket] |= 1 << number;
-        }
-        // What stays below all of them moves nothing.
-        let lowest = wanted.iter().map(|one| one.bucket).min().unwrap_or(0);
         let at_risk = wanted[VALUE_AT_RISK].bucket;
+        let (marks, moved) = (&mut scratch.wanted, &scratch.moved);
+        let beyond = at_risk + 1..marks.len() - 1;
+        marks[beyond.clone()].fill(BEYOND);
+        for (number, one) in wanted.iter().enumerate() {
+            marks[one.bucket] |= 1 << number;
+        }
         let mut tail = self.buckets.sums_from[at_risk + 1];
-        for one in self.changed(set) {
-            let to = one.pdop.is_finite().then(|| self.buckets.of(one.pdop));
-            if to.is_some_and(|to| to < lowest) {
+        for (one, (from, to)) in self.changed(set).zip(moved) {
+            let (from, to) = (marks[*from as usize], marks[*to as usize]);
+            // Most samples stay among those that nothing asks for.
+            if from | to == 0 {
                 continue;
             }
             let whole = &self.samples[one.sample as usize];
             let weight = self.weight(whole);
-            let from = whole.pdop.is_finite().then(|| self.buckets.of(whole.pdop));
             let value = |pdop| BucketValue {
                 pdop,
                 sample: one.sample,
                 weight,
             };
-            if let Some(from) = from {
-                if from > at_risk {
-                    tail -= weight as f64 * whole.pdop;
-                }
-                if scratch.wanted[from] != 0 {
-                    for_bits(scratch.wanted[from], |n| {
-                        moves[n].gone.push(value(whole.pdop))
-                    });
-                }
+            if from & BEYOND != 0 {
+                tail -= real(weight) * whole.pdop;
             }
-            if let Some(to) = to {
-                if to > at_risk {
-                    tail += weight as f64 * one.pdop;
-                }
-                if scratch.wanted[to] != 0 {
-                    for_bits(scratch.wanted[to], |n| {
-                        moves[n].arrived.push(value(one.pdop))
-                    });
-                }
+            for_bits(from, |n| moves[n].gone.push(value(whole.pdop)));
+            if to & BEYOND != 0 {
+                tail += real(weight) * one.pdop;
             }
+            for_bits(to, |n| moves[n].arrived.push(value(one.pdop)));
         }
-        wanted.iter().for_each(|one| scratch.wanted[one.bucket] = 0);
+        marks[beyond].fill(0);
+        wanted.iter().for_each(|one| marks[one.bucket] = 0);
         (moves, tail)
     }
 
