@@ -18,6 +18,10 @@ const RECENT: usize = 32;
 /// Instants whose numbers fill one register of any processor, or a few.
 const ABREAST: usize = 4;
 
+/// The numbers of some instants one after the other.
+#[derive(Debug, Clone, Copy)]
+struct Abreast([u8; ABREAST * LANES]);
+
 /// The satellites in view of the points of a tile.
 #[derive(Debug, Clone)]
 struct ViewLanes {
@@ -25,8 +29,8 @@ struct ViewLanes {
     /// Satellites of the recent instants together.
     sum: Lanes<u32>,
     least: Lanes<u32>,
-    /// The numbers of the recent instants one after the other, as bytes that end at the greatest level.
-    recent: [[u8; ABREAST * LANES]; RECENT / ABREAST],
+    /// The numbers of the recent instants, as bytes that end at the greatest level.
+    recent: [Abreast; RECENT / ABREAST],
 }
 
 /// The same, counted.
@@ -48,7 +52,7 @@ impl ViewLanes {
         },
         sum: Lanes([0; LANES]),
         least: Lanes([u32::MAX; LANES]),
-        recent: [[ENOUGH; ABREAST * LANES]; RECENT / ABREAST],
+        recent: [Abreast([ENOUGH; ABREAST * LANES]); RECENT / ABREAST],
     };
 
     /// Adds an instant after `recent` others that are not yet counted, fewer than [`RECENT`].
@@ -56,7 +60,7 @@ impl ViewLanes {
     fn add(&mut self, visible: &Lanes<u32>, recent: usize) {
         let abreast = &mut self.recent[recent / ABREAST % (RECENT / ABREAST)];
         let first = recent % ABREAST * LANES;
-        for (l, few) in abreast[first..first + LANES].iter_mut().enumerate() {
+        for (l, few) in abreast.0[first..first + LANES].iter_mut().enumerate() {
             let visible = visible.0[l];
             self.sum.0[l] += visible;
             self.least.0[l] = self.least.0[l].min(visible);
@@ -67,24 +71,24 @@ impl ViewLanes {
     /// Counts the recent instants.
     #[inline(always)]
     fn settle(&mut self) {
-        let mut fewest = [ENOUGH; ABREAST * LANES];
+        let mut fewest = Abreast([ENOUGH; ABREAST * LANES]);
         for abreast in &self.recent {
-            for (fewest, &few) in fewest.iter_mut().zip(abreast) {
-                *fewest = few.min(*fewest);
+            for n in 0..ABREAST * LANES {
+                fewest.0[n] = fewest.0[n].min(abreast.0[n]);
             }
         }
-        let fewest = fewest.into_iter().fold(ENOUGH, u8::min);
+        let fewest = fewest.0.into_iter().fold(ENOUGH, u8::min);
         let counts = &mut self.counts;
         for (below, fewer) in (0..).zip(&mut counts.fewer).skip(fewest.into()) {
-            let mut instants = [0_u8; ABREAST * LANES];
+            let mut instants = Abreast([0; ABREAST * LANES]);
             for abreast in &self.recent {
-                for (instants, &few) in instants.iter_mut().zip(abreast) {
-                    *instants += u8::from(few <= below);
+                for n in 0..ABREAST * LANES {
+                    instants.0[n] += u8::from(abreast.0[n] <= below);
                 }
             }
             for (l, fewer) in fewer.0.iter_mut().enumerate() {
                 for n in 0..ABREAST {
-                    *fewer += u32::from(instants[n * LANES + l]);
+                    *fewer += u32::from(instants.0[n * LANES + l]);
                 }
             }
         }
@@ -364,8 +368,8 @@ impl Kernel {
 #[inline(always)]
 fn out_of_service(tile: &Tile, pdop: &Lanes<f32>, available: f32) -> Lanes<u32> {
     let mut out = tile.weights.member;
-    for (out, &pdop) in out.0.iter_mut().zip(&pdop.0) {
-        *out &= 1 - u32::from(pdop <= available);
+    for l in 0..LANES {
+        out.0[l] &= 1 - u32::from(pdop.0[l] <= available);
     }
     out
 }
@@ -388,10 +392,10 @@ impl Work for TallySample<'_, '_> {
         let tiles = to.tiles.iter().zip(&mut to.of_tiles).enumerate();
         for (number, (tile, tally)) in tiles {
             let (pdop, leo) = (&self.outcome.pdop[number], &self.outcome.visible[number]);
-            let gnss = self.fixed.tile(number).visible;
+            let gnss = self.fixed.tile(number);
             let mut all = *leo;
-            for (all, &gnss) in all.0.iter_mut().zip(gnss) {
-                *all += u32::from(gnss);
+            for l in 0..LANES {
+                all.0[l] += u32::from(gnss.visible[l]);
             }
             let out = out_of_service(tile, pdop, self.available);
             tally.outages.add(&out, to.instants);
