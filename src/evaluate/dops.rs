@@ -8,8 +8,8 @@ use crate::ground::Site;
 use crate::stats::{Level, Summary, Weighted, summarize_weighted, weighted_quantile};
 use serde::Serialize;
 
-/// The place of the first clock among the dilutions: GDOP, PDOP, HDOP and VDOP come before.
-pub(super) const CLOCKS_FROM: usize = 4;
+/// The place of the first clock among the dilutions of the kernel: GDOP, HDOP and VDOP come before.
+pub(super) const CLOCKS_FROM: usize = 3;
 
 /// Statistics of the dilutions of precision over the solved samples, weighted by point; `None` if
 /// there are no samples.
@@ -104,8 +104,8 @@ impl Evaluator {
         Ok(DopStatistics {
             gdop: summaries[0],
             pdop: metrics.pdop_summary(),
-            hdop: summaries[2],
-            vdop: summaries[3],
+            hdop: summaries[1],
+            vdop: summaries[2],
             tdop,
             solved_fraction: metrics.solved_fraction,
         })

@@ -38,6 +38,7 @@
 //! Values are never sorted, and beyond a certain number not even stored ([`order_statistics`]).
 
 mod candidates;
+mod coarse;
 mod dilutions;
 mod fixed;
 mod instructions;
@@ -81,13 +82,14 @@ use fixed::{Fixed, FixedSample, FixedTiles, SampleInstant};
 use lanes::{Lanes, MaskTerms, SineWeights, UnitWeights};
 use limits::{Limits, SingleLimits};
 use memory::Keep;
+use normal::SharedClock;
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::Propagation;
 use rayon::prelude::*;
 use sample::{Doubt, Sample, SampleContext, SampleOutcome, UNSOLVED, Workspace};
 use settle::Settling;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use tally::ViewTally;
 use tiles::Tiles;
 
@@ -125,6 +127,9 @@ pub(super) struct Kernel {
     instructions: InstructionSet,
     places: Places,
     kept_values: usize,
+    kept_bytes: usize,
+    /// The clocks of the GNSS at all instants, once dilutions are asked for.
+    clocks: OnceLock<Result<Vec<SharedClock>, EphemerisError>>,
     /// Weight of all samples.
     total: u64,
 }
@@ -190,6 +195,8 @@ impl Kernel {
             setup,
             rotations,
             kept_values: keep.values,
+            kept_bytes: keep.fixed_bytes,
+            clocks: OnceLock::new(),
             total: weights.total(),
         })
     }

@@ -1,33 +1,32 @@
 //! All dilutions of precision, in f64 lanes.
 //!
-//! They need the sums of each clock, which the metrics do not, and are computed where they are asked for. The
-//! verdict of a sample and its PDOP are those of the metrics; the inverse of the normal matrix is that by minors,
-//! which is accurate for PDOP up to [`LANES_BELOW`]. Beyond it, and where the lanes are in doubt, [`DopFamily`] is
-//! computed from the sums of the plain path.
+//! They need the mean line of sight of each clock, which the metrics do not, and are computed where they are asked for: those of
+//! the GNSS once, if they fit in memory. The verdict of a sample and its PDOP are those of the metrics; the inverse of the
+//! normal matrix is that by minors, which is accurate for PDOP up to [`LANES_BELOW`]. Beyond it, and where the lanes are in
+//! doubt, [`DopFamily`] is computed from the sums of the plain path.
 
 use super::super::dops::{CLOCKS_FROM, groups};
 use super::super::{Setup, fixed, plain};
-use super::fixed::{Fixed, FixedSystem, add_group, weight_or_one};
+use super::fixed::{Fixed, FixedSample, SampleInstant};
 use super::instructions::Work;
-use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, Sums, UnitWeights, Weighting};
-use super::normal::at;
+use super::lanes::{LANES, Lanes, SineWeights, Sums, UnitWeights, Weighting};
+use super::normal::{NormalLanes, SharedClock, at};
 use super::order_statistics::{Counts, Found, Places, RankSearch};
 use super::propagation::Propagation;
 use super::sample::{SampleContext, SampleOutcome, UNSOLVED, Workspace};
 use super::tiles::Tile;
 use super::{Evaluating, Kernel, summed};
-use crate::dop::{Clocks, DopFamily, ObservationWeights};
+use crate::dop::{DopFamily, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::stats::Summary;
 
 /// PDOP up to which the inverse by minors has ten digits.
 const LANES_BELOW: f32 = 50.0;
 
-/// Places of the dilutions: the clocks follow.
+/// Places of the dilutions: the clocks follow, and PDOP is that of the metrics.
 const GDOP: usize = 0;
-const PDOP: usize = 1;
-const HDOP: usize = 2;
-const VDOP: usize = 3;
+const HDOP: usize = 1;
+const VDOP: usize = 2;
 
 /// The dilutions of one instant, tile by tile; [`UNSOLVED`] if there is none.
 #[derive(Debug, Clone)]
@@ -46,7 +45,7 @@ impl DilutionRows {
             row[tile].0[lane] = UNSOLVED;
         }
         let Some(family) = family else { return };
-        let position = [family.gdop, family.pdop, family.hdop, family.vdop];
+        let position = [family.gdop, family.hdop, family.vdop];
         let clocks = family.tdop.iter().map(|tdop| tdop.unwrap_or(f64::INFINITY));
         for (row, value) in self.0.iter_mut().zip(position.into_iter().chain(clocks)) {
             row[tile].0[lane] = value as f32;
@@ -59,6 +58,8 @@ struct Dilution<'a> {
     setup: &'a Setup,
     scene: &'a SampleContext,
     fixed: &'a Fixed,
+    /// The clocks of the GNSS at all instants, or none.
+    kept: &'a [SharedClock],
     leo: &'a Ephemeris,
 }
 
@@ -68,14 +69,20 @@ impl Dilution<'_> {
         evaluating: &mut Evaluating<'_>,
         rows: &mut DilutionRows,
     ) -> Result<(), EphemerisError> {
-        let systems = self
-            .fixed
-            .systems_at(&self.scene.tiles, evaluating.instant)?;
+        let (tiles, mut made) = (&self.scene.tiles, Vec::new());
+        let count = self.fixed.clock_count() * tiles.tiles.len();
+        let clocks = if self.kept.is_empty() {
+            self.fixed.clocks_at(tiles, evaluating.instant, &mut made)?;
+            &made
+        } else {
+            let first = evaluating.instant.number * count;
+            &self.kept[first..first + count]
+        };
         self.fixed.instructions.run(Dilute {
             scene: self.scene,
-            clocks: self.setup.clocks,
-            fixed_mask: &self.fixed.mask,
-            systems: &systems,
+            fixed: evaluating.fixed,
+            clocks,
+            clock_count: self.fixed.clock_count(),
             work: evaluating.work,
             outcome: evaluating.outcome,
             rows,
@@ -109,7 +116,7 @@ impl Dilution<'_> {
 }
 
 impl Kernel {
-    /// Statistics of all dilutions: GDOP, PDOP, HDOP, VDOP and the TDOP of each clock.
+    /// Statistics of all dilutions but PDOP: GDOP, HDOP, VDOP and the TDOP of each clock.
     pub(in super::super) fn dops(
         &self,
         ephemeris: &Ephemeris,
@@ -119,6 +126,7 @@ impl Kernel {
             setup: &self.setup,
             scene: &self.scene,
             fixed: &self.fixed,
+            kept: self.kept_clocks()?,
             leo: ephemeris,
         };
         if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
@@ -126,6 +134,30 @@ impl Kernel {
         } else {
             self.dops_streaming(propagation, &dilution)
         }
+    }
+
+    /// The clocks of the GNSS at all instants; none if they do not fit in memory.
+    fn kept_clocks(&self) -> Result<&[SharedClock], EphemerisError> {
+        let make = || {
+            let tiles = &self.scene.tiles;
+            let count = self.fixed.clock_count() * tiles.tiles.len() * self.setup.grid.len();
+            let mut clocks = Vec::new();
+            if count * size_of::<SharedClock>() <= self.kept_bytes {
+                clocks.reserve_exact(count);
+                let samples = self.setup.grid.iter().zip(self.rotations.iter());
+                for (number, (elapsed_s, &rotation)) in samples.enumerate() {
+                    let instant = SampleInstant {
+                        number,
+                        elapsed_s,
+                        rotation,
+                    };
+                    self.fixed.clocks_at(tiles, instant, &mut clocks)?;
+                }
+            }
+            Ok(clocks)
+        };
+        let clocks = self.clocks.get_or_init(make).as_ref();
+        clocks.map(Vec::as_slice).map_err(Clone::clone)
     }
 
     fn dilution_rows(&self) -> DilutionRows {
@@ -225,9 +257,10 @@ pub(super) fn largest_dilution(setup: &Setup) -> f64 {
 /// The dilutions at all points of one instant, after its evaluation.
 struct Dilute<'a> {
     scene: &'a SampleContext,
-    clocks: Clocks,
-    fixed_mask: &'a MaskTerms<f64>,
-    systems: &'a [FixedSystem],
+    fixed: FixedSample<'a>,
+    /// The clocks of the GNSS, tile by tile, and how many a tile has.
+    clocks: &'a [SharedClock],
+    clock_count: usize,
     work: &'a mut Workspace,
     outcome: &'a SampleOutcome,
     rows: &'a mut DilutionRows,
@@ -249,17 +282,10 @@ impl Dilute<'_> {
     #[inline(always)]
     fn dilute<W: Weighting>(self) {
         let tiles = &self.scene.tiles.tiles;
-        let mut sums = Vec::with_capacity(self.systems.len() + 1);
+        let mut clocks = Vec::with_capacity(self.clock_count + 1);
         for group in &self.scene.tiles.groups {
             self.work.select(self.scene, group);
             for number in group.tiles.clone() {
-                let tile = &tiles[number];
-                sums.clear();
-                for system in self.systems {
-                    let mut seen = Sums::<f64>::zero();
-                    system.add_to::<W>(&mut seen, tile, self.fixed_mask);
-                    sums.push(seen);
-                }
                 let mut leo = Sums::<f64>::zero();
                 let candidates = self.work.candidates(number, group);
                 candidates.look(
@@ -270,29 +296,84 @@ impl Dilute<'_> {
                         leo.add_line::<W>(line, seen, seen, l);
                     },
                 );
-                sums.push(leo);
-                if self.clocks == Clocks::Shared {
-                    let mut all = Sums::<f64>::zero();
-                    sums.drain(..)
-                        .for_each(|of_system| all.merge::<W>(&of_system));
-                    sums.push(all);
+                let fixed = self.fixed.tile(number);
+                clocks.clear();
+                let of_tile = number * self.clock_count..(number + 1) * self.clock_count;
+                for clock in &self.clocks[of_tile] {
+                    clocks.push(ClockLanes::of_system(clock));
                 }
-                dilute::<W>(tile, &sums, &self.outcome.pdop[number], number, self.rows);
+                clocks.push(ClockLanes::of_design::<W>(&leo, fixed.shared));
+                let normal = NormalLanes::new::<W>(&leo, &fixed);
+                let covariance = CofactorLanes::new(&normal.matrix);
+                let pdop = &self.outcome.pdop[number];
+                dilute(
+                    &tiles[number],
+                    &covariance,
+                    &clocks,
+                    (pdop, number),
+                    self.rows,
+                );
             }
         }
     }
 }
 
-/// The dilutions at the points of a tile from the sums of each clock.
+/// A clock at the points of a tile.
+struct ClockLanes {
+    /// Mean line of sight of its satellites.
+    mean: [Lanes<f64>; 3],
+    /// Their weight; 0 without any.
+    weight: Lanes<f64>,
+}
+
+impl ClockLanes {
+    #[inline(always)]
+    fn of_system(clock: &SharedClock) -> Self {
+        let mut lanes = Self {
+            mean: [ZERO; 3],
+            weight: ZERO,
+        };
+        for l in 0..LANES {
+            for (axis, mean) in lanes.mean.iter_mut().enumerate() {
+                mean.0[l] = clock.mean(axis, l);
+            }
+            lanes.weight.0[l] = clock.weight(l);
+        }
+        lanes
+    }
+
+    /// That of the design, perhaps shared with the GNSS.
+    #[inline(always)]
+    fn of_design<W: Weighting>(leo: &Sums<f64>, shared: Option<&SharedClock>) -> Self {
+        let mut lanes = match shared {
+            Some(shared) => Self::of_system(shared),
+            None => Self {
+                mean: [ZERO; 3],
+                weight: ZERO,
+            },
+        };
+        for l in 0..LANES {
+            let theirs = lanes.weight.0[l];
+            let all = theirs + leo.weight::<W>(l);
+            let scale = 1.0 / if all > 0.0 { all } else { 1.0 };
+            for (mean, sum) in lanes.mean.iter_mut().zip([&leo.x, &leo.y, &leo.z]) {
+                mean.0[l] = (sum.0[l] + mean.0[l] * theirs) * scale;
+            }
+            lanes.weight.0[l] = all;
+        }
+        lanes
+    }
+}
+
+/// The dilutions at the points of a tile from the inverse of the normal matrix and each clock.
 #[inline(always)]
-fn dilute<W: Weighting>(
+fn dilute(
     tile: &Tile,
-    clocks: &[Sums<f64>],
-    pdop: &Lanes<f32>,
-    number: usize,
+    covariance: &CofactorLanes,
+    clocks: &[ClockLanes],
+    (pdop, number): (&Lanes<f32>, usize),
     rows: &mut DilutionRows,
 ) {
-    let covariance = CofactorLanes::new::<W>(clocks);
     let up = &tile.double.up;
     let (mut horizontal2, mut vertical2, mut all2) = (ZERO, ZERO, ZERO);
     for l in 0..LANES {
@@ -302,24 +383,20 @@ fn dilute<W: Weighting>(
         horizontal2.0[l] = position - vertical;
         all2.0[l] = position;
     }
-    for (clock, sums) in clocks.iter().enumerate() {
+    for (place, clock) in clocks.iter().enumerate() {
         let mut clock2 = ZERO;
+        let [x, y, z] = &clock.mean;
         for l in 0..LANES {
-            let weight = weight_or_one::<W>(sums, l);
-            let mean = [
-                sums.x.0[l] / weight,
-                sums.y.0[l] / weight,
-                sums.z.0[l] / weight,
-            ];
-            let variance = 1.0 / weight + covariance.form(mean, l);
-            let is_seen = sums.used::<W>(l) > 0;
+            let weight = clock.weight.0[l];
+            let is_seen = weight > 0.0;
+            let own = 1.0 / if is_seen { weight } else { 1.0 };
+            let variance = own + covariance.form([x.0[l], y.0[l], z.0[l]], l);
             all2.0[l] += if is_seen { variance } else { 0.0 };
             clock2.0[l] = if is_seen { variance } else { f64::INFINITY };
         }
-        rows.0[CLOCKS_FROM + clock][number] = roots(&clock2, pdop);
+        rows.0[CLOCKS_FROM + place][number] = roots(&clock2, pdop);
     }
     rows.0[GDOP][number] = roots(&all2, pdop);
-    rows.0[PDOP][number] = *pdop;
     rows.0[HDOP][number] = roots(&horizontal2, pdop);
     rows.0[VDOP][number] = roots(&vertical2, pdop);
 }
@@ -342,14 +419,10 @@ struct CofactorLanes([Lanes<f64>; 6]);
 
 impl CofactorLanes {
     #[inline(always)]
-    fn new<W: Weighting>(clocks: &[Sums<f64>]) -> Self {
-        let mut normal = [ZERO; 6];
-        for sums in clocks {
-            add_group::<W>(sums, &mut normal);
-        }
+    fn new(normal: &[Lanes<f64>; 6]) -> Self {
         let mut covariance = [ZERO; 6];
         for l in 0..LANES {
-            let [xx, yy, zz, xy, xz, yz] = at(&normal, l);
+            let [xx, yy, zz, xy, xz, yz] = at(normal, l);
             let minor_xx = yy * zz - yz * yz;
             let minor_xy = yz * xz - xy * zz;
             let minor_xz = xy * yz - yy * xz;

@@ -167,6 +167,33 @@ impl Fixed {
         Ok(())
     }
 
+    /// Systems that have their own clocks.
+    pub(super) fn clock_count(&self) -> usize {
+        match self.clocks {
+            Clocks::PerSystem => self.systems.len(),
+            Clocks::Shared => 0,
+        }
+    }
+
+    /// The clocks of the systems that have their own, tile by tile and system by system; none if the systems share one.
+    pub(super) fn clocks_at(
+        &self,
+        tiles: &Tiles,
+        instant: SampleInstant,
+        to: &mut Vec<SharedClock>,
+    ) -> Result<(), EphemerisError> {
+        if self.clocks == Clocks::PerSystem {
+            let systems = self.systems_at(tiles, instant)?;
+            self.instructions.run(MakeClocks {
+                fixed: self,
+                tiles: &tiles.tiles,
+                systems: &systems,
+                to,
+            });
+        }
+        Ok(())
+    }
+
     /// The satellites of each system at an instant.
     pub(super) fn systems_at(
         &self,
@@ -310,6 +337,39 @@ impl Make<'_> {
     }
 }
 
+/// The clocks of one sample, from the positions of each system.
+struct MakeClocks<'a> {
+    fixed: &'a Fixed,
+    tiles: &'a [Tile],
+    systems: &'a [FixedSystem],
+    to: &'a mut Vec<SharedClock>,
+}
+
+impl Work for MakeClocks<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        match self.fixed.weights {
+            ObservationWeights::Unit => self.make::<UnitWeights>(),
+            ObservationWeights::SineElevation => self.make::<SineWeights>(),
+        }
+    }
+}
+
+impl MakeClocks<'_> {
+    #[inline(always)]
+    fn make<W: Weighting>(self) {
+        for tile in self.tiles {
+            for system in self.systems {
+                let mut sums = Sums::<f64>::zero();
+                system.add_to::<W>(&mut sums, tile, &self.fixed.mask);
+                self.to.push(shared_clock::<W>(&sums));
+            }
+        }
+    }
+}
+
 /// Adds Σ w v vᵀ - (Σ w v)(Σ w v)ᵀ / Σ w.
 #[inline(always)]
 pub(super) fn add_group<W: Weighting>(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
@@ -336,7 +396,7 @@ pub(super) fn weight_or_one<W: Weighting>(sums: &Sums<f64>, lane: usize) -> f64 
 }
 
 #[inline(always)]
-fn shared_clock<W: Weighting>(sums: &Sums<f64>) -> SharedClock {
+pub(super) fn shared_clock<W: Weighting>(sums: &Sums<f64>) -> SharedClock {
     let means = [&sums.x, &sums.y, &sums.z].map(|sum| {
         let mean = |l: usize| sum.0[l] / weight_or_one::<W>(sums, l);
         Lanes(std::array::from_fn(mean))

@@ -204,7 +204,7 @@ pub(super) struct SineWeights;
 impl Weighting for UnitWeights {
     const BY_SINE: bool = false;
     const SINGLE_BELOW: f32 = 2.0;
-    const SINGLE_CONDITION: f32 = 0.0;
+    const SINGLE_CONDITION: f32 = 64.0;
 }
 
 impl Weighting for SineWeights {
@@ -254,8 +254,8 @@ impl<R: Real> LineLanes<R> {
 
     #[inline(always)]
     pub(super) fn set(&mut self, l: usize, line: &SightLine<R>) {
-        for (lanes, value) in self.to.iter_mut().zip(line.to) {
-            lanes.0[l] = value;
+        for axis in 0..3 {
+            self.to[axis].0[l] = line.to[axis];
         }
         (self.inverse.0[l], self.sine.0[l]) = (line.inverse, line.sine);
     }

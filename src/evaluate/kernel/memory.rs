@@ -5,9 +5,11 @@ use super::super::dops::CLOCKS_FROM;
 use super::dilutions::largest_dilution;
 use super::fixed::FixedTiles;
 use super::lanes::LANES;
+use super::normal::SharedClock;
 use super::order_statistics::{Found, Places};
 use super::skylines::SkyTables;
 use super::tally::TileTally;
+use crate::dop::Clocks;
 
 /// What may be stored in memory. Beyond this, values are recomputed when needed, so memory does not
 /// grow with points times instants.
@@ -47,13 +49,26 @@ pub(in super::super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
     fixed + SkyTables::bytes(&setup.sites) + threads * (values + counts + tallies)
 }
 
+/// Memory of the clocks of the GNSS at all instants, bytes.
+fn clock_bytes(setup: &Setup) -> usize {
+    let systems = match setup.clocks {
+        Clocks::PerSystem => setup.gnss.len(),
+        Clocks::Shared => 0,
+    };
+    match tiles(setup) * systems * size_of::<SharedClock>() {
+        bytes if bytes > Keep::default().fixed_bytes => 0,
+        bytes => bytes,
+    }
+}
+
 /// Memory of all dilutions of one evaluation, bytes.
 pub(in super::super) fn dops_bytes(setup: &Setup, threads: usize) -> usize {
     let rows = CLOCKS_FROM + setup.clock_states();
     let places = Places::new(largest_dilution(setup));
     let counts = rows * (places.bytes() + Found::BYTES);
-    match tiles(setup) * LANES {
+    let values = match tiles(setup) * LANES {
         values if values <= Keep::default().values => rows * values * size_of::<f32>() + counts,
         _ => threads * counts,
-    }
+    };
+    values + clock_bytes(setup)
 }

@@ -21,7 +21,7 @@ pub(super) struct FixedTile<'a> {
     pub(super) shared: Option<&'a SharedClock>,
 }
 
-/// GNSS satellites that share their clock with the design; their own contribution is already part of
+/// GNSS satellites that share a clock, perhaps with the design; their own contribution is already part of
 /// the normal matrix.
 #[derive(Debug, Clone)]
 pub(super) struct SharedClock {
@@ -36,6 +36,27 @@ pub(super) struct SharedClock {
 pub(super) const ZERO: Lanes<f32> = Lanes([0.0; LANES]);
 
 impl SharedClock {
+    /// No satellite.
+    pub(super) const NONE: Self = Self {
+        mean: [ZERO; 3],
+        remainder: [ZERO; 3],
+        count: Lanes([0; LANES]),
+        weight: [ZERO; 2],
+    };
+
+    /// Takes a lane of another.
+    #[inline(always)]
+    pub(super) fn set(&mut self, place: usize, from: &Self, lane: usize) {
+        for axis in 0..3 {
+            self.mean[axis].0[place] = from.mean[axis].0[lane];
+            self.remainder[axis].0[place] = from.remainder[axis].0[lane];
+        }
+        for part in 0..2 {
+            self.weight[part].0[place] = from.weight[part].0[lane];
+        }
+        self.count.0[place] = from.count.0[lane];
+    }
+
     #[inline(always)]
     pub(super) fn mean<R: Real>(&self, axis: usize, lane: usize) -> R {
         R::joined(self.mean[axis].0[lane], self.remainder[axis].0[lane])
@@ -98,7 +119,7 @@ pub(super) fn at<R: Copy>(matrix: &[Lanes<R>; 6], lane: usize) -> [R; 6] {
 /// The normal matrix of the position at the points of a tile.
 pub(super) struct NormalLanes<R> {
     /// (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
-    matrix: [Lanes<R>; 6],
+    pub(super) matrix: [Lanes<R>; 6],
     /// Satellites minus clock states.
     pub(super) surplus: Lanes<u32>,
 }

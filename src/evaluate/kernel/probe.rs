@@ -174,6 +174,7 @@ impl SomeTiles<'_> {
                 work.select_tile(&tiles[number], number - group.tiles.start, slack_km);
                 begun.evaluate_tile::<W>((number, group), &self.fixed.tile(number), work, out);
             }
+            begun.end_group::<W>(group, &self.fixed, work, out);
         }
     }
 }

@@ -1,13 +1,14 @@
 //! One instant at all points with all satellites: the code that is compiled for each instruction set.
 
 use super::candidates::{Block, Candidates, bits};
+use super::coarse::Batches;
 use super::fixed::FixedSample;
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes, MaskTerms, SightLine, SineWeights, Sums, UnitWeights, Weighting};
 use super::limits::Limits;
 use super::normal::{FixedTile, NormalLanes};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
-use super::skylines::{SeenLanes, Sight, SightSlack, Skyward, UNSEEN};
+use super::skylines::{Sight, SightSlack, Skyward};
 use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tile, Tiles};
 use crate::dop::ObservationWeights;
 use crate::visibility::Mask;
@@ -132,10 +133,12 @@ pub(super) struct SampleOutcome {
     pub(super) doubled: u64,
     /// Points to recompute, or recomputed.
     pub(super) doubts: Vec<Undecided>,
-    /// The points of the last tile with skylines that see each of its candidates.
-    seen: Vec<SeenLanes>,
+    /// The points of the last tile with skylines that see each of its candidates: 1 or 0.
+    pub(super) seen: Vec<Lanes<u32>>,
     /// The satellites of the last block at the points of such a tile.
     sights: Vec<Sight<f32>>,
+    /// The samples of the tiles of a group to be solved in f64.
+    pub(super) coarse: Batches,
 }
 
 impl SampleOutcome {
@@ -147,6 +150,7 @@ impl SampleOutcome {
             doubts: Vec::new(),
             seen: Vec::new(),
             sights: vec![Sight::nowhere(); BLOCK],
+            coarse: Batches::default(),
         }
     }
 }
@@ -198,12 +202,13 @@ fn evaluate<W: Weighting>(
         for number in group.tiles.clone() {
             begun.evaluate_tile::<W>((number, group), &fixed.tile(number), work, out);
         }
+        begun.end_group::<W>(group, fixed, work, out);
     }
 }
 
 /// An instant at which the satellites have their places.
 pub(super) struct Begun<'a> {
-    scene: &'a SampleContext,
+    pub(super) scene: &'a SampleContext,
     mask: MaskTerms<f32>,
     slack: SightSlack,
     limits: Limits,
@@ -267,13 +272,13 @@ impl<'a> Begun<'a> {
 }
 
 /// A tile whose sums are known.
-struct Judging<'a> {
-    scene: &'a SampleContext,
+pub(super) struct Judging<'a> {
+    pub(super) scene: &'a SampleContext,
     limits: &'a Limits,
-    number: usize,
-    fixed: &'a FixedTile<'a>,
-    positions: &'a Positions,
-    candidates: TileCandidates<'a>,
+    pub(super) number: usize,
+    pub(super) fixed: &'a FixedTile<'a>,
+    pub(super) positions: &'a Positions,
+    pub(super) candidates: TileCandidates<'a>,
 }
 
 impl Judging<'_> {
@@ -287,40 +292,7 @@ impl Judging<'_> {
             doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
         }
         if any(&verdict.coarse) {
-            self.compute_again::<W>(&verdict, out);
-        }
-    }
-
-    /// Recomputes the tile in f64 for the points for which f32 is too coarse.
-    #[inline(always)]
-    fn compute_again<W: Weighting>(&self, verdict: &LaneVerdict, out: &mut SampleOutcome) {
-        let (number, candidates) = (self.number, self.candidates);
-        // Where a decision in f32 is in doubt, another path computes the sample.
-        let sums = match &self.scene.tiles.tiles[number].sky {
-            None => candidates.double_sums::<W>(self.scene, number, self.positions),
-            Some(_) => candidates.double_sums_of_seen::<W>(self, &out.seen),
-        };
-        let limits = &self.scene.limits;
-        let system = NormalLanes::new::<W>(&sums, self.fixed);
-        let double = system.pdop(limits.clocks);
-        let mut undecided = Lanes([0; LANES]);
-        for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {
-            let pdop = double.0[lane];
-            let satellites = system.surplus.0[lane] + limits.clocks;
-            if pdop < f64::INFINITY && limits.decides(pdop, satellites) {
-                let solved = pdop <= limits.cap;
-                out.pdop[number].0[lane] = if solved {
-                    limits.available.stored(pdop)
-                } else {
-                    UNSOLVED
-                };
-            } else {
-                undecided.0[lane] = 1;
-            }
-            out.doubled += 1;
-        }
-        if any(&undecided) {
-            doubt(number, Doubt::Geometry, &undecided, candidates, out);
+            self.sum_again::<W>(&verdict.coarse, out);
         }
     }
 }
@@ -382,15 +354,15 @@ impl<'a> TileCandidates<'a> {
 
     /// The sums in f64 where it is known who sees each of the satellites.
     #[inline(always)]
-    fn double_sums_of_seen<W: Weighting>(
+    pub(super) fn double_sums_of_seen<W: Weighting>(
         self,
         judging: &Judging<'_>,
-        seen: &[SeenLanes],
+        seen: &[Lanes<u32>],
     ) -> Sums<f64> {
         let mut sums = Sums::zero();
         let tile = &judging.scene.tiles.tiles[judging.number];
         for (n, seen) in self.satellites().zip(seen) {
-            if *seen != UNSEEN {
+            if any(seen) {
                 let satellite = judging.positions.at(n);
                 sums.add_seen::<W>(&tile.double, satellite, &judging.scene.double, seen);
             }
@@ -399,7 +371,7 @@ impl<'a> TileCandidates<'a> {
     }
 
     #[inline(always)]
-    fn double_sums<W: Weighting>(
+    pub(super) fn double_sums<W: Weighting>(
         self,
         scene: &SampleContext,
         number: usize,
@@ -472,7 +444,7 @@ impl LaneVerdict {
 
 /// Records the doubtful points of a tile for the plain path.
 #[inline(never)]
-fn doubt(
+pub(super) fn doubt(
     number: usize,
     doubt: Doubt,
     lanes: &Lanes<u32>,

@@ -202,8 +202,8 @@ impl TileSky {
     #[inline(never)]
     fn fetch<R>(&self, sights: &mut [Sight<R>]) {
         for sight in sights.iter_mut().filter(|sight| sight.among) {
-            for (bin, table) in sight.bins.0.iter_mut().zip(&self.tables) {
-                *bin = table[*bin as usize % BINS];
+            for l in 0..LANES {
+                sight.bins.0[l] = self.tables[l][sight.bins.0[l] as usize % BINS];
             }
         }
     }
@@ -310,16 +310,12 @@ impl<R: Real> Sight<R> {
         &mut self,
         sums: &mut Sums<R>,
         decide: impl Fn(usize) -> Option<bool>,
-    ) -> SeenLanes {
+    ) -> Lanes<u32> {
         if self.among {
             self.settle(decide);
         }
         self.pass(|l, line, seen, possible| sums.add_line::<W>(line, seen, possible, l));
-        let mut lanes = UNSEEN;
-        for (lane, seen) in lanes.iter_mut().zip(&self.seen.0) {
-            *lane = *seen as u8;
-        }
-        lanes
+        self.seen
     }
 }
 
@@ -342,9 +338,9 @@ impl<R: Real> Skyward<'_, R> {
         decide: impl Fn(usize) -> Option<bool>,
         add: impl FnMut(usize, &SightLine<R>, bool, bool),
     ) {
-        let mut sight = [Sight::nowhere()];
-        self.look_at([satellite].into_iter(), &mut sight);
-        let [mut sight] = sight;
+        let mut sights = [Sight::nowhere()];
+        self.look_at([satellite].into_iter(), &mut sights);
+        let [sight] = &mut sights;
         if sight.among {
             sight.settle(decide);
         }
@@ -414,12 +410,6 @@ impl<R: Real> Skyward<'_, R> {
     }
 }
 
-/// 1 in the lanes that see a satellite.
-pub(super) type SeenLanes = [u8; LANES];
-
-/// Seen nowhere.
-pub(super) const UNSEEN: SeenLanes = [0; LANES];
-
 impl<R: Real> Sums<R> {
     /// Adds a satellite where it is known to be visible.
     #[inline(always)]
@@ -428,11 +418,12 @@ impl<R: Real> Sums<R> {
         sites: &SiteLanes<R>,
         satellite: [R; 3],
         mask: &MaskTerms<R>,
-        seen: &SeenLanes,
+        seen: &Lanes<u32>,
     ) {
-        for (l, &seen) in seen.iter().enumerate() {
+        for l in 0..LANES {
             let (line, ..) = sites.line(satellite, mask, l);
-            self.add_line::<W>(&line, seen != 0, seen != 0, l);
+            let is_seen = seen.0[l] != 0;
+            self.add_line::<W>(&line, is_seen, is_seen, l);
         }
     }
 }

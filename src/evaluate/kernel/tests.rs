@@ -256,13 +256,14 @@ proptest! {
 }
 
 /// What f32 may be off by in one sample of N satellites: a rounding of the sums times their condition, which is at most
-/// N PDOP², of which PDOP has half. From PDOP 2 on, values are made in f64. With weights by elevation the condition itself is
-/// bounded, at 64, and a quarter of a rounding of it is left.
+/// N PDOP², of which PDOP has half. From PDOP 2 on, and with weights by elevation anywhere, the condition itself is bounded, at
+/// 64, and a quarter of a rounding of it is left.
 fn single_sample(satellites: f64, weights: ObservationWeights) -> f64 {
     let epsilon = f64::from(f32::EPSILON);
+    let bounded = 0.25 * epsilon * 64.0;
     match weights {
-        ObservationWeights::Unit => (0.5 * epsilon * satellites * 4.0).max(1e-6),
-        ObservationWeights::SineElevation => 0.25 * epsilon * 64.0,
+        ObservationWeights::Unit => (0.5 * epsilon * satellites * 4.0).max(bounded),
+        ObservationWeights::SineElevation => bounded,
     }
 }
 

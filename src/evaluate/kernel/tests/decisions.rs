@@ -1,5 +1,7 @@
 //! Decisions that f32 cannot make.
 
+use super::super::coarse::FEW;
+use super::super::lanes::LANES;
 use super::*;
 
 /// A satellite at rest over the rotating Earth.
@@ -180,6 +182,72 @@ fn satellites_just_above_the_ground_are_decided_in_f64() {
     }
 }
 
+/// PDOP of 200 instants, tile by tile, with f32 trusted so far, and how many values are made in f64.
+fn values(
+    kernel: &Kernel,
+    ephemeris: &Ephemeris,
+    single: SingleLimits,
+) -> (Vec<[f32; LANES]>, f64) {
+    let limits = Limits {
+        single,
+        ..kernel.scene.limits
+    };
+    let mut all = Vec::new();
+    let take = |instant: &mut Evaluating<'_>| {
+        all.extend(instant.outcome.pdop.iter().map(|tile| tile.0));
+        Ok(())
+    };
+    let propagation = &Propagation::new(ephemeris);
+    let rechecks = kernel.run(propagation, 0..200, limits, take).unwrap();
+    (all, rechecks.large_pdop as f64)
+}
+
+/// A point of a tile that is computed alone in f64 has the bits that it has among all the points of the tile.
+#[test]
+fn points_alone_in_f64_equal_whole_tiles() {
+    let (unit, sine) = (ObservationWeights::Unit, ObservationWeights::SineElevation);
+    let skyline = Some(street());
+    let (mut alone, mut together) = (0, 0);
+    for (clocks, weights, skyline, below) in [
+        (Clocks::PerSystem, unit, None, 1.3),
+        (Clocks::PerSystem, unit, skyline.clone(), 2.0),
+        (Clocks::Shared, unit, skyline.clone(), 2.0),
+        (Clocks::Shared, sine, skyline, 4.0),
+    ] {
+        let setup = Setup {
+            clocks,
+            observation_weights: weights,
+            ..setup([3.0, 54.0], Surface::Wgs84)
+        };
+        let setup = match skyline {
+            Some(skyline) => setup.with_skyline(skyline),
+            None => setup,
+        };
+        let design: Design = "delta:55:182/13/1@925".parse().unwrap();
+        let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
+        let evaluator = Evaluator::new(setup).unwrap();
+        let kernel = &evaluator.kernel;
+        let limit = SingleLimits {
+            below,
+            condition: 0.0,
+            ..kernel.scene.limits.single
+        };
+        let (some, _) = values(kernel, &ephemeris, limit);
+        let (every, _) = values(kernel, &ephemeris, SingleLimits::NONE);
+        // Beyond what f32 may be off by.
+        let is_coarse = |pdop: &f32| *pdop > below * 1.000_01;
+        for (some, every) in some.iter().zip(&every) {
+            for (one, again) in some.iter().zip(every).filter(|(_, d)| is_coarse(d)) {
+                assert_eq!(one.to_bits(), again.to_bits());
+            }
+            let coarse = every.iter().filter(|pdop| is_coarse(pdop)).count() as u32;
+            alone += u32::from((1..=FEW).contains(&coarse));
+            together += u32::from(coarse > FEW);
+        }
+    }
+    assert!(alone > 0 && together > 0, "{alone} {together}");
+}
+
 /// Single values in f32 compared with f64, both computed for every sample: 1e-6, for few and for many
 /// satellites in view, with one clock or several, and with weights by elevation, where all but a few are trusted. Order
 /// statistics rely on this.
@@ -205,25 +273,12 @@ fn single_values_hold_six_digits() {
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
         let kernel = &evaluator.kernel;
-        let values = |single: SingleLimits| {
-            let limits = Limits {
-                single,
-                ..kernel.scene.limits
-            };
-            let propagation = &Propagation::new(&ephemeris);
-            let mut all = Vec::new();
-            let take = |instant: &mut Evaluating<'_>| {
-                all.extend(instant.outcome.pdop.iter().flat_map(|tile| tile.0));
-                Ok(())
-            };
-            let rechecks = kernel.run(propagation, 0..200, limits, take).unwrap();
-            (all, rechecks.large_pdop as f64)
-        };
-        let (single, again) = values(kernel.scene.limits.single);
-        let (double, every) = values(SingleLimits::NONE);
+        let (single, again) = values(kernel, &ephemeris, kernel.scene.limits.single);
+        let (double, every) = values(kernel, &ephemeris, SingleLimits::NONE);
         assert!(again < 0.15 * every, "{text}: {again} of {every} in f64");
         let apart = |(s, d): (&f32, &f32)| (f64::from(*s) / f64::from(*d) - 1.0).abs();
-        let solved = single.iter().zip(&double).filter(|(_, d)| d.is_finite());
+        let pairs = single.iter().flatten().zip(double.iter().flatten());
+        let solved = pairs.filter(|(_, d)| d.is_finite());
         let worst = solved.map(apart).fold(0.0, f64::max);
         // Measured: 5e-7 for unit weights. A maximum of 0 would mean that f64 was not used.
         let bound = if weights == sine { 2e-6 } else { 1e-6 };

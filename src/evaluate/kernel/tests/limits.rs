@@ -29,8 +29,8 @@ fn lanes_decide_outside_the_band_of_each_threshold() {
 #[test]
 fn memory_of_what_is_asked_for_is_counted() {
     let setup = setup([3.0, 54.0], Surface::Sphere);
-    // GDOP, PDOP, HDOP, VDOP and two clocks, on nine tiles.
-    let rows = (6 * 9 * 16 * 1440 * size_of::<f32>()) as u64;
+    // GDOP, HDOP, VDOP and two clocks, on nine tiles; and of the clock of the GNSS eight numbers and how many satellites.
+    let rows = (5 * 9 * 16 * 1440 * size_of::<f32>()) as u64 + (9 * 9 * 16 * 1440 * 4) as u64;
     let dops = setup.dops_bytes(1);
     assert!((rows..rows + (8 << 20)).contains(&dops), "{dops}");
     let mut asking = setup.clone();
