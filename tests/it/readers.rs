@@ -36,7 +36,7 @@ fn run(directory: &Path, arguments: &[&str]) -> Ran {
 }
 
 /// A directory `mixed` of the four satellites of the design as STK ephemerides, one of them packed and padded with zeros,
-/// and of files that are no constellations, two of which the program itself wrote.
+/// and of files that are no constellations.
 fn mixed() -> TempDir {
     let directory = TempDir::new().unwrap();
     let export = ["export", "--design", DESIGN, "--as", "stk", "--out", "out"];
@@ -60,16 +60,17 @@ fn mixed() -> TempDir {
     }
     fs::write(mixed.join("notes.txt"), "read me first\n").unwrap();
     fs::write(mixed.join("picture.png"), b"\x89PNG\r\n\x1a\n").unwrap();
-    // What the program itself wrote beside the files of an export is not worth a word.
-    for name in ["manifest.json", "provenance.json"] {
-        fs::copy(directory.path().join("out").join(name), mixed.join(name)).unwrap();
-    }
     directory
 }
 
 #[test]
 fn a_directory_is_its_constellation_files_and_the_rest_is_named() {
     let directory = mixed();
+    // What the program itself wrote beside the files of an export is not worth a word.
+    for name in ["manifest.json", "provenance.json"] {
+        let [from, to] = ["out", "mixed"].map(|place| directory.path().join(place).join(name));
+        fs::copy(from, to).unwrap();
+    }
     let evaluate = ["evaluate", "--constellation", "mixed", "--format", "json"];
     let whole = run(directory.path(), &evaluate);
     assert_eq!(whole.status, 0, "{}", whole.stderr);
