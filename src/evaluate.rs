@@ -238,18 +238,24 @@ impl Setup {
         pairs.all(|pair| pair[0].weight == pair[1].weight)
     }
 
-    /// Maximum memory of an [`Evaluator`] and `threads` concurrent evaluations, bytes.
+    /// Maximum memory of an [`Evaluator`] and so many evaluations at a time on `threads` threads, bytes.
     #[must_use]
-    pub fn memory_bytes(&self, threads: usize) -> u64 {
-        let lanes = kernel::memory_bytes(self, threads) as u64;
+    pub fn memory_bytes(&self, threads: usize, evaluations: usize) -> u64 {
+        let lanes = kernel::memory_bytes(self, threads, evaluations) as u64;
         let needs_plain = self.window_s.is_some() || self.may_have_several_leo_clocks();
         let plain = if needs_plain {
-            self.plain_bytes(threads)
+            self.plain_bytes(evaluations)
         } else {
             0
         };
         let metrics = lanes.saturating_add(plain);
-        metrics.saturating_add(self.on_demand_bytes(threads))
+        metrics.saturating_add(self.on_demand_bytes(evaluations))
+    }
+
+    /// Maximum memory of an [`Evaluator`] and a tile of time evaluated on `threads` threads, bytes.
+    #[must_use]
+    pub fn memory_of_tile_bytes(&self, threads: usize) -> u64 {
+        kernel::memory_of_tile_bytes(self, threads) as u64
     }
 
     /// Memory of [`Evaluator::dops`] of one constellation in addition, bytes.
@@ -266,7 +272,7 @@ impl Setup {
     }
 
     /// Of [`Setup::memory_bytes`], what is computed on demand.
-    fn on_demand_bytes(&self, threads: usize) -> u64 {
+    fn on_demand_bytes(&self, evaluations: usize) -> u64 {
         let samples = self.sample_count();
         let errors = self.accuracy.as_ref().map_or(0, |_| accuracy::SAMPLE_BYTES);
         let windows = self.window_s.map_or(0, |window_s| {
@@ -275,10 +281,10 @@ impl Setup {
         });
         let each = samples.saturating_mul(errors).saturating_add(windows);
         let dops = match self.metrics.asks_for_hdop {
-            true => self.dops_bytes(1).saturating_mul(threads as u64),
+            true => self.dops_bytes(1).saturating_mul(evaluations as u64),
             false => 0,
         };
-        dops.saturating_add(each.saturating_mul(threads) as u64)
+        dops.saturating_add(each.saturating_mul(evaluations) as u64)
     }
 
     /// Maximum number of clock states, with one LEO clock.
@@ -290,11 +296,11 @@ impl Setup {
     }
 
     /// Memory of the plain path.
-    fn plain_bytes(&self, threads: usize) -> u64 {
+    fn plain_bytes(&self, evaluations: usize) -> u64 {
         let samples = self.sample_count() as u64;
         let fixed = samples * size_of::<fixed::PlainGnssSample>() as u64;
-        let per_thread = samples * size_of::<crate::stats::Weighted>() as u64;
-        fixed + per_thread * threads as u64
+        let each = samples * size_of::<crate::stats::Weighted>() as u64;
+        fixed + each * evaluations as u64
     }
 
     /// The weight of an observation along a unit vector.

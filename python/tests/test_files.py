@@ -1,6 +1,7 @@
 """Exports, reading back, validation and lint."""
 
 import json
+import warnings
 
 import numpy as np
 import pytest
@@ -39,8 +40,13 @@ def test_lint(tmp_path):
     assert (finding.line, finding.severity, finding.format) == (1, "error", "tle")
 
 
-def test_warnings_are_warnings(tmp_path, small):
+def test_own_descriptions_are_not_worth_a_warning_but_foreign_files_are(tmp_path, small):
     directory = tmp_path / "mixed"
     nw.Constellation("delta:53:4/2/1@1000").export(directory, "tle", scenario=small)
-    with pytest.warns(nw.NavwalkerWarning, match="left out: 1 .manifest.json."):
-        nw.read(directory)
+    assert {"manifest.json", "provenance.json"} < {file.name for file in directory.iterdir()}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert nw.read(directory).satellites == 4
+    (directory / "notes.txt").write_text("not a constellation\n")
+    with pytest.warns(nw.NavwalkerWarning, match="left out: 1 .notes.txt."):
+        assert nw.read(directory).satellites == 4

@@ -20,6 +20,8 @@ const TOLD_EXPORT_BYTES: u64 = 100_000_000;
 const WRITTEN_PER_S: u64 = 30_000_000;
 /// Designs of a search for the fewest satellites that need `--allow-large`.
 const LARGE_SEARCH: f64 = 1e9;
+/// Samples of one evaluation that need `--allow-large`, unless it is in tiles.
+const LARGE_EVALUATION: f64 = 1e9;
 /// Time of a sweep from which it is printed, seconds.
 const TOLD_SEARCH_S: f64 = 10.0;
 /// Speed of full evaluations on one thread, samples per second: the paper's 205 920 in about 6 ms.
@@ -52,18 +54,46 @@ pub(crate) fn check_threads(threads: NonZeroUsize) -> Result<()> {
     Ok(())
 }
 
-/// Fails before starting if a scenario needs more memory than is available.
-pub(crate) fn check_memory(setup: &Setup) -> Result<()> {
-    let needed = setup.memory_bytes(rayon::current_num_threads());
-    check_fits(setup, needed)
+/// Fails before starting if one evaluation has very many samples, which an evaluation in tiles may have.
+fn check_samples(setup: &Setup) -> Result<()> {
+    let samples = setup.sample_count() as f64;
+    if samples > LARGE_EVALUATION && !allows_large() {
+        let threads = rayon::current_num_threads() as f64;
+        // A stream is computed twice.
+        let time_s = 2.0 * samples / (SAMPLES_PER_S * threads);
+        bail!(
+            "{} points x {} instants are {} samples; one evaluation of 200 satellites takes about {} here and {} of memory. \
+             More than {LARGE_EVALUATION:.0e} need --allow-large, or evaluate --tile I/N, or use a coarser region.step-deg \
+             or time.step-s",
+            setup.sites.len(),
+            setup.grid.len(),
+            shown_count(samples),
+            shown_time(time_s as u64),
+            shown_bytes(setup.memory_bytes(rayon::current_num_threads(), 1))
+        );
+    }
+    Ok(())
 }
 
-/// The same for one constellation at a time with all dilutions or the series.
+/// Fails before starting if a search in a scenario, an evaluation on each thread, is very large.
+pub(crate) fn check_search(setup: &Setup) -> Result<()> {
+    check_samples(setup)?;
+    let threads = rayon::current_num_threads();
+    check_fits(setup, setup.memory_bytes(threads, threads))
+}
+
+/// The same for one constellation at a time.
+pub(crate) fn check_whole(setup: &Setup) -> Result<()> {
+    check_samples(setup)?;
+    check_memory_of_tables(setup, false, false)
+}
+
+/// Fails before starting if one evaluation with all dilutions or the series needs more memory than is available.
 pub(crate) fn check_memory_of_tables(setup: &Setup, dops: bool, series: bool) -> Result<()> {
     let threads = rayon::current_num_threads();
     let dops = if dops { setup.dops_bytes(threads) } else { 0 };
     let series = if series { setup.series_bytes() } else { 0 };
-    check_fits(setup, setup.memory_bytes(threads) + dops + series)
+    check_fits(setup, setup.memory_bytes(threads, 1) + dops + series)
 }
 
 fn check_fits(setup: &Setup, needed: u64) -> Result<()> {
@@ -157,12 +187,13 @@ pub(crate) fn say_of_tiles(setup: &Setup, size: &TileSize) {
     let threads = rayon::current_num_threads();
     let seconds = size.one_thread_s / threads as f64;
     output::hint(&format!(
-        "{} points x {} instants in {}: one takes {} here, {} of memory and a file of {}",
+        "{} points x {} instants are {} samples in {}: one takes {} here, {} of memory and a file of {}",
         setup.sites.len(),
         setup.grid.len(),
+        shown_count(setup.sample_count() as f64),
         counted(size.tiles, "tile"),
         shown_time(seconds as u64),
-        shown_bytes(setup.memory_bytes(threads)),
+        shown_bytes(setup.memory_of_tile_bytes(threads)),
         shown_bytes(size.all_bytes / size.tiles as u64),
     ));
 }

@@ -4,8 +4,10 @@ use crate::cli::files;
 use crate::cli::output::{self, shown_path};
 use crate::exchange::import::{Fleet, Imported, Merged, MergedFiles, StateChoice};
 use crate::exchange::lint::Format;
+use crate::exchange::manifest::FILE_NAME as MANIFEST;
 use crate::exchange::recognise::recognise;
 use crate::formats::text::finding::LeftOut;
+use crate::run::PROVENANCE;
 use anyhow::{Context, Result, bail};
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Cursor};
@@ -64,7 +66,7 @@ fn read_by(
 }
 
 /// Imports each file of a path: the file itself, or the constellation files in a directory. A warning lists the
-/// other files in the directory.
+/// other files in the directory, but for those with which this program describes its own directories.
 pub(crate) fn read_each(path: &Path, format: Option<Format>) -> Result<Vec<(PathBuf, Imported)>> {
     let mut found = Vec::new();
     let mut add = |file, imported| found.push((file, imported));
@@ -86,6 +88,9 @@ fn each_by(
     let (files, mut others) = entries(path)?;
     let mut any = false;
     for file in files {
+        if is_description(&file)? {
+            continue;
+        }
         match read_any(open, &file, (format, choice)).with_context(|| how_to_go_on(&file, path))? {
             Some(imported) => {
                 take(file, imported);
@@ -170,7 +175,13 @@ fn entries(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>)> {
     Ok(entries.into_iter().partition(|entry| entry.is_file()))
 }
 
-/// `left out: 2 (manifest.json, notes.txt)`.
+/// Whether this program wrote the file to describe the directory that it is in: by its name, and by having no satellites.
+fn is_description(file: &Path) -> Result<bool> {
+    let named = [MANIFEST, PROVENANCE].map(|name| file.file_name() == Some(name.as_ref()));
+    Ok(named.contains(&true) && format_of(file)?.is_none())
+}
+
+/// `left out: 2 (notes.txt, picture.png)`.
 fn left_out(others: &[PathBuf]) -> String {
     let name = |path: &PathBuf| {
         let name = shown_path(Path::new(path.file_name().unwrap_or_default()));

@@ -306,14 +306,20 @@ impl Study {
         (!told.is_empty()).then(|| told.join(", "))
     }
 
-    /// The setup of an evaluation, if it fits into memory.
+    /// The setup of a search, if it is not very large.
     pub(crate) fn setup(&self) -> Result<Setup> {
+        let setup = self.setup_in_tiles()?;
+        limits::check_search(&setup)?;
+        Ok(setup)
+    }
+
+    /// The setup of an evaluation in tiles, of any number of samples.
+    pub(crate) fn setup_in_tiles(&self) -> Result<Setup> {
         let contents = self.contents()?;
         let setup = self
             .scenario
             .setup_with_notes(&|file| self.content(file, contents));
         let (setup, notes) = setup.map_err(|error| self.placed(&error))?;
-        limits::check_memory(&setup)?;
         self.warn_of_columns(contents);
         for note in &notes {
             output::warning(note);
@@ -429,7 +435,8 @@ impl Study {
     /// # Errors
     /// If a file that the scenario names cannot be read or is wrong, or a GNSS satellite cannot be propagated.
     pub fn evaluator(&self) -> Result<Evaluator> {
-        let setup = self.setup()?;
+        let setup = self.setup_in_tiles()?;
+        limits::check_whole(&setup)?;
         say_of_setup(&setup);
         Ok(Evaluator::new(setup)?)
     }

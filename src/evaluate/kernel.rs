@@ -64,7 +64,7 @@ pub use instructions::InstructionSet;
 pub(super) use losses::{
     ChangedSample, DoubtAbout, LossDoubt, LossDoubts, LossTally, SampleLosses, WholeSample,
 };
-pub(super) use memory::{dops_bytes, memory_bytes};
+pub(super) use memory::{dops_bytes, memory_bytes, memory_of_tile_bytes};
 pub(super) use metres::RangeNormal;
 pub(super) use order_statistics::quantile_rank;
 pub use probe::{SampleTile, SampleTiles};
@@ -313,7 +313,8 @@ impl Kernel {
     }
 
     /// One pass over the samples on all threads. `note` adds an instant to an accumulator of integers, which
-    /// are merged in the order of time, and to so many sums, which are stored for each chunk.
+    /// are merged in the order of time, and to so many sums, which are stored for each chunk. A block of chunks shares an
+    /// accumulator, since those of many points are large.
     fn pass<A: Merge + Send>(
         &self,
         propagation: &Propagation<'_>,
@@ -322,27 +323,26 @@ impl Kernel {
         note: impl Fn(&mut Evaluating<'_>, &mut A, &mut [f64]) -> Result<(), EphemerisError> + Sync,
         sums: usize,
     ) -> Result<(A, TilePartials), EphemerisError> {
-        chunks
-            .par_iter()
-            .try_fold(
-                || (new(), Vec::new()),
-                |(mut all, mut parts), chunk| {
-                    let mut part = vec![0.0; sums];
-                    let limits = self.scene.limits;
-                    let rechecks = self.run(propagation, chunk.clone(), limits, |instant| {
-                        note(instant, &mut all, &mut part)
-                    })?;
-                    parts.push((rechecks, part));
-                    Ok((all, parts))
-                },
-            )
-            .try_reduce(
-                || (new(), Vec::new()),
-                |(all, mut parts), (more, more_parts)| {
-                    parts.extend(more_parts);
-                    Ok((all.merged(&more), parts))
-                },
-            )
+        let accumulators = memory::accumulators(rayon::current_num_threads(), &self.scene.tiles);
+        let each = chunks.len().div_ceil(accumulators).max(1);
+        let block = |chunks: &[Range<usize>]| {
+            let (mut all, mut parts) = (new(), Vec::new());
+            for chunk in chunks {
+                let mut part = vec![0.0; sums];
+                let limits = self.scene.limits;
+                let rechecks = self.run(propagation, chunk.clone(), limits, |instant| {
+                    note(instant, &mut all, &mut part)
+                })?;
+                parts.push((rechecks, part));
+            }
+            Ok((all, parts))
+        };
+        let blocks = chunks.par_chunks(each).map(block);
+        let found = blocks.try_reduce_with(|(all, mut parts), (more, more_parts)| {
+            parts.extend(more_parts);
+            Ok((all.merged(&more), parts))
+        });
+        found.unwrap_or_else(|| Ok((new(), Vec::new())))
     }
 
     fn count(&self, values: &[Lanes<f32>], counts: &mut Counts) -> f64 {

@@ -49,8 +49,6 @@ use crate::search::{ShellSpace, SweepSteps};
 /// row. The same tolerance for both, in steps.
 const STEP_SLACK: f64 = 1e-9;
 
-/// Maximum of points times instants: beyond this, one evaluation takes gigabytes.
-const MAX_POINT_SAMPLES: u64 = 1_000_000_000;
 /// Maximum designs of an exhaustive search: weeks of computing.
 const MAX_DESIGNS: u64 = 1_000_000_000;
 
@@ -138,7 +136,6 @@ fn finish_scenario(scenario: &mut Scenario, reader: &mut Reader<'_>) {
     }
     check_weighting(scenario, reader);
     if reader.is_sound() {
-        check_point_samples(scenario, reader);
         check_designs(scenario, reader);
         accuracy::check(scenario, reader);
     }
@@ -175,20 +172,6 @@ fn check_fixed(scenario: &Scenario, reader: &mut Reader<'_>) {
         let reason = error.to_string();
         reader.refuse(&known, Fault::SetUp { reason });
     }
-}
-
-fn check_point_samples(scenario: &Scenario, reader: &mut Reader<'_>) {
-    let Some(points) = scenario.region.count() else {
-        return;
-    };
-    let count = points * scenario.time.steps();
-    let keys = [
-        key!(TimeSpan.step_s),
-        key!(TimeSpan.duration_h),
-        key!(RegionKeys.step_deg),
-        key!(RegionKeys.spacing_km),
-    ];
-    reader.at_most(MAX_POINT_SAMPLES, count, "points times samples", &keys);
 }
 
 fn check_designs(scenario: &Scenario, reader: &mut Reader<'_>) {

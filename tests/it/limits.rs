@@ -33,6 +33,16 @@ fn what_is_very_large_is_not_started() {
             "about 10003 files of 296.4 GB in all, in about 2 h; more than 10.0 GB needs --allow-large",
         ),
         (
+            "evaluate --design delta:55:4/2/1@925 --set time.duration-h=168 --set region.step-deg=0.5 \
+             --set region.latitude-deg=[-90,90] --set region.longitude-deg=[-180,180]",
+            "259920 points x 10080 instants are 2.6e9 samples; one evaluation of 200 satellites takes about ",
+        ),
+        (
+            "optimize --out run --set time.duration-h=168 --set region.step-deg=0.5 \
+             --set region.latitude-deg=[-90,90] --set region.longitude-deg=[-180,180]",
+            "More than 1e9 need --allow-large, or evaluate --tile I/N, or use a coarser region.step-deg or time.step-s",
+        ),
+        (
             "evaluate --design delta:55:4/2/1@925 --set time.step-s=86.4 --set region.step-deg=0.5 \
              --set region.latitude-deg=[-90,90] --set region.longitude-deg=[0,360] \
              --set metrics.window-min=5",
@@ -139,4 +149,89 @@ fn checkpoints_do_not_grow_with_the_generations() {
         (2.0..6.0).contains(&(long_log / short_log)),
         "{short_log} {long_log}"
     );
+}
+
+/// A globe at two degrees by a minute over 44 days: it is refused whole, and a tile of it is told and evaluated.
+#[test]
+fn a_scenario_of_any_size_goes_in_tiles() {
+    let directory = TempDir::new().unwrap();
+    let globe = "evaluate --design delta:55:4/2/1@925 --set time.duration-h=1056 --set region.step-deg=2 \
+         --set region.latitude-deg=[-90,90] --set region.longitude-deg=[-180,180] --set gnss.constellations=[] --threads 1";
+    let ran = |further: &str| ran(directory.path(), &line(&format!("{globe}{further}")));
+    let whole = ran("");
+    assert_eq!(whole.status, 2);
+    let told = "16380 points x 63360 instants are 1.0e9 samples";
+    assert!(whole.stderr.contains(told), "{}", whole.stderr);
+    let tile = ran(" --tile 63360/63360 --out last.tile");
+    assert_eq!(tile.status, 0, "{}", tile.stderr);
+    let told = format!("{told} in 63360 tiles: one takes less than 1 s here, ");
+    assert!(tile.stderr.contains(&told), "{}", tile.stderr);
+    // Of the last instant, four bytes for each point, rounded up to sixteen of them, between two lines.
+    let bytes = fs::metadata(directory.path().join("last.tile"))
+        .unwrap()
+        .len();
+    assert!((4 * 16_380..4 * 16_396 + 4096).contains(&bytes), "{bytes}");
+}
+
+/// The most memory that a process has had so far, bytes: the kernel says it while the process lives.
+#[cfg(target_os = "linux")]
+fn peak_bytes(words: &str) -> (u64, String) {
+    use std::process::Stdio;
+    let directory = TempDir::new().unwrap();
+    let mut child = crate::common::started(directory.path(), &line(words), Stdio::piped);
+    let mut peak = 0;
+    let status = format!("/proc/{}/status", child.id());
+    while child.try_wait().unwrap().is_none() {
+        let text = fs::read_to_string(&status).unwrap_or_default();
+        let found = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let kib = found.and_then(|text| text.trim().strip_suffix("kB")?.trim().parse().ok());
+        peak = peak.max(kib.map_or(0, |kib: u64| kib * 1024));
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let output = child.wait_with_output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{words}: {stderr}");
+    (peak, stderr)
+}
+
+/// What is told before the work is what the work takes, of a globe of one degree: as a tile, with the GNSS, whose sums are not kept, and as a
+/// stream of more values than are kept. The program itself has 36 MB beside it; two thirds of what is told may not be needed.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_memory_that_is_told_is_the_memory_that_is_taken() {
+    use navwalker::scenario::Scenario;
+    let keys = [
+        ("region.step-deg", "1"),
+        ("region.latitude-deg", "[-90,90]"),
+        ("region.longitude-deg", "[-180,180]"),
+        ("time.step-s", "1080"),
+    ];
+    let set = keys.map(|(key, value)| format!("--set {key}={value}"));
+    let globe = format!(
+        "evaluate --design delta:55:4/2/1@925 --threads 2 {}",
+        set.join(" ")
+    );
+    let check = |words: &str, told: u64, taken: u64| {
+        let most = told + 45_000_000;
+        assert!(taken <= most, "{words}: {told} told, {taken} taken");
+        assert!(3 * taken >= told, "{words}: {told} told, {taken} taken");
+    };
+    let tile = format!("{globe} --tile 1/10 --out a.tile");
+    let (taken, stderr) = peak_bytes(&tile);
+    let told = stderr.split(" MB of memory").next().unwrap();
+    let told: u64 = told.rsplit(' ').next().unwrap().parse().unwrap();
+    check(&tile, told * 1_000_000, taken);
+    let mut overrides = keys.map(|(key, value)| format!("{key}={value}")).to_vec();
+    overrides.push("gnss.constellations=[]".to_owned());
+    let scenario = Scenario::parse(
+        "paper",
+        navwalker::scenario::builtin("paper").unwrap().as_bytes(),
+        &overrides,
+    )
+    .unwrap();
+    let setup = scenario.setup(&|_| unreachable!()).unwrap();
+    assert!(setup.sample_count() > 4 << 20, "it is a stream");
+    let globe = format!("{globe} --set gnss.constellations=[]");
+    let (taken, _) = peak_bytes(&globe);
+    check(&globe, setup.memory_bytes(2, 1), taken);
 }

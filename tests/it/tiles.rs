@@ -29,7 +29,7 @@ fn tiles(place: &Path, study: &str, count: usize) {
         let ran = done(place, &words);
         assert_eq!(ran.stdout, "");
         // What it takes is told before the work.
-        let told = format!("42 points x 48 instants in {count} tiles: one takes");
+        let told = format!("42 points x 48 instants are 2016 samples in {count} tiles: one takes");
         assert!(ran.stderr.contains(&told), "{}", ran.stderr);
     }
 }

@@ -47,11 +47,16 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let given = sourced.into_iter().map(|one| one.constellation);
     let given: Vec<Constellation> = given.collect();
     let series = SeriesDirectory::new(args, &study, &given)?;
-    let evaluator = study.evaluator()?;
+    let evaluator = match &tiles {
+        Some(_) => tiles::evaluator(&study)?,
+        None => study.evaluator()?,
+    };
     let tiles = tiles
         .map(|tiles| tiles.open(&study, &evaluator))
         .transpose()?;
-    limits::check_memory_of_tables(evaluator.setup(), args.dops, series.is_some())?;
+    if tiles.is_none() {
+        limits::check_memory_of_tables(evaluator.setup(), args.dops, series.is_some())?;
+    }
     let phases = GnssPhases::new(args.gnss_phases, evaluator.setup())?;
     let nodes = RelativeNodeStudy::new(args.relative_nodes, &given)?;
     let deployment = DeploymentTable::read(args.phases.as_deref())?;

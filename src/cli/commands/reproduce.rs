@@ -234,7 +234,7 @@ impl ChosenStudy {
         let read = |file: &str| self.read(file);
         // Also what is wrong in the scenario is told before a search begins.
         if let Ok(setup) = self.study.scenario(&self.overrides)?.setup(&read) {
-            limits::check_memory(&setup)?;
+            limits::check_whole(&setup)?;
         }
         if self.study.has_searches() {
             output::hint("running the searches of the study; this takes seconds to minutes");

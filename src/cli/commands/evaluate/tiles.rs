@@ -33,7 +33,7 @@ pub(super) fn evaluate(
     let inputs = study.inputs();
     let inputs = inputs.iter().map(PathBuf::as_path);
     files::refuse_inputs(out, inputs.chain(args.constellations.inputs()))?;
-    let setup = study.setup()?;
+    let setup = study.setup_in_tiles()?;
     let instants = setup.grid.len();
     if tile.parts > instants {
         bail!("--tile {tile}: there are {instants} instants, and a tile has at least one");
@@ -65,6 +65,13 @@ pub(super) fn evaluate(
         quoted(&out.display().to_string())
     ));
     Ok(Status::Done)
+}
+
+/// The evaluator of tiles, however many samples they have together.
+pub(super) fn evaluator(study: &Study) -> Result<Evaluator> {
+    let setup = study.setup_in_tiles()?;
+    say_of_setup(&setup);
+    Ok(Evaluator::new(setup)?)
 }
 
 /// What a tile comes to.

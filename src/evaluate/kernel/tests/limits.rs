@@ -35,17 +35,20 @@ fn memory_of_what_is_asked_for_is_counted() {
     assert!((rows..rows + (8 << 20)).contains(&dops), "{dops}");
     let mut asking = setup.clone();
     asking.metrics.asks_for_hdop = true;
-    assert_eq!(asking.memory_bytes(2), setup.memory_bytes(2) + 2 * dops);
+    assert_eq!(
+        asking.memory_bytes(2, 2),
+        setup.memory_bytes(2, 2) + 2 * dops
+    );
     assert!(setup.series_bytes() >= (143 * 1440 * size_of::<f32>()) as u64);
     let under_skyline = setup.clone().with_skyline(street());
     let table = (2048 * size_of::<u32>()) as u64;
-    let more = under_skyline.memory_bytes(1) - setup.memory_bytes(1);
+    let more = under_skyline.memory_bytes(1, 1) - setup.memory_bytes(1, 1);
     assert!((table..table + 143 * 1024).contains(&more), "{more}");
     // A second skyline has a table of its own.
     let mut under_two = under_skyline.clone();
     under_two.sites[7].skyline = Some(Arc::new(street()));
     assert_eq!(
-        under_two.memory_bytes(1) - under_skyline.memory_bytes(1),
+        under_two.memory_bytes(1, 1) - under_skyline.memory_bytes(1, 1),
         table
     );
 }
