@@ -46,7 +46,7 @@ pub fn mean_density_kg_m3(altitude_km: f64, activity: SolarActivity) -> Option<f
     let above = TABLE.partition_point(|line| line.0 < altitude_km);
     let high = TABLE.get(above)?;
     let low = TABLE.get(above.saturating_sub(1))?;
-    if altitude_km < low.0 {
+    if !(low.0..=high.0).contains(&altitude_km) {
         return None;
     }
     let at = activity as usize;

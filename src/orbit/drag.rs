@@ -277,12 +277,11 @@ mod tests {
         let time = |of: DragOrbit| scale_m / of.decay_m_s().unwrap();
         let expected = (time(high) - time(low)) / (SECONDS_PER_DAY * DAYS_PER_YEAR);
         let found = high.years_down_to(580.0).unwrap();
-        // sqrt(a) changes by 0.15 % over the span.
-        assert!((found / expected - 1.0).abs() < 2e-3, "{found} {expected}");
+        // sqrt(a) changes by 0.14 % over the span, 0.5 % of the difference of the two times.
+        assert!((found / expected - 1.0).abs() < 6e-3, "{found} {expected}");
     }
 
-    /// From 500 to 400 km: Vallado, *Fundamentals of Astrodynamics*, example 6-1 has this form; here the vis-viva equation by hand
-    /// for 300 km to 0.1 km/s.
+    /// By the vis-viva equation.
     #[test]
     fn validate_transfers_by_energy() {
         let speed = |r: f64, a: f64| (MU_KM3_S2 * (2.0 / r - 1.0 / a)).sqrt() * 1e3;
