@@ -112,6 +112,7 @@ fn command(cli: Cli) -> anyhow::Result<Status> {
         Command::Evaluate(args) => commands::evaluate::run(&args),
         Command::Reproduce(args) => commands::reproduce::run(&args),
         Command::Dop(args) => commands::dop::run(&args),
+        Command::Lifetime(args) => commands::lifetime::run(&args),
         Command::Orbit(args) => commands::orbit::run(&args),
         Command::Separation(args) => commands::separation::run(&args),
         Command::Export(args) => commands::export::run(&args),

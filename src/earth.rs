@@ -18,6 +18,9 @@ pub const J2: f64 = 1.082_626_68e-3;
 /// gives the size of the frozen eccentricity.
 pub const J3: f64 = -2.532_656_485_33e-6;
 
+/// Fourth zonal harmonic, unnormalised (EGM96: -√9 C̄₄₀, C̄₄₀ = 0.539 873 863 789e-6; same report).
+pub const J4: f64 = -1.619_621_591_367e-6;
+
 /// Flattening of the WGS 84 ellipsoid.
 pub const FLATTENING: f64 = 1.0 / 298.257_223_563;
 
@@ -131,6 +134,7 @@ mod tests {
     fn validate_j3_against_the_normalised_coefficient() {
         // Twelve digits are printed.
         assert!((J3 / (-7_f64.sqrt() * 0.957_254_173_792e-6) - 1.0).abs() < 1e-12);
+        assert!((J4 / (-3.0 * 0.539_873_863_789e-6) - 1.0).abs() < 1e-12);
     }
 
     /// Semi-minor axis of WGS 84: 6356.752 314 245 km (NIMA TR8350.2, table 3.3).

@@ -1,9 +1,12 @@
 //! Mean elements and the theories that turn them into TEME states.
 
+pub mod atmosphere;
+pub mod drag;
 pub mod earth_orbit;
 mod elements;
 pub mod fit;
 pub mod ground_track;
+pub mod injection;
 pub mod j2;
 pub mod kepler;
 pub mod osculating;
@@ -11,6 +14,7 @@ pub mod relations;
 pub mod separation;
 pub mod sgp4;
 mod spread;
+pub mod zonal;
 
 pub use elements::{ElementsError, MeanElements};
 pub use spread::PropagatorDistance;

@@ -19,6 +19,7 @@ pub mod figures;
 mod from_evaluations;
 pub(crate) mod front_table;
 mod labels;
+mod lifetime;
 mod orbits;
 #[cfg(feature = "figures")]
 pub mod page;
@@ -55,6 +56,10 @@ pub use evaluated::{
 pub use expected::{ExpectedService, SpareService};
 pub use from_evaluations::{EvaluatedFront, EvaluationSource, NotEvaluated};
 pub use labels::quantity_label;
+pub use lifetime::{
+    DesignLifetime, DragResult, InjectionResult, LifetimeOptions, ShellLifetime, lifetimes_csv,
+    lifetimes_text,
+};
 pub use orbits::{OrbitResult, RepeatResult, orbits_csv, orbits_text};
 #[cfg(feature = "cli")]
 pub(crate) use phases::in_order;

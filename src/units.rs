@@ -4,6 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Seconds in a day of 86 400 SI seconds.
 pub const SECONDS_PER_DAY: f64 = 86_400.0;
+/// Days of a Julian year.
+pub const DAYS_PER_YEAR: f64 = 365.25;
 
 /// Seconds in an hour.
 pub const SECONDS_PER_HOUR: f64 = 3_600.0;

@@ -3,6 +3,7 @@
 mod diff;
 mod evaluate;
 mod export;
+mod lifetime;
 mod member_pick;
 mod optimize;
 mod products;
@@ -17,6 +18,7 @@ mod sweep;
 pub(crate) use diff::DiffArgs;
 pub(crate) use evaluate::EvaluateArgs;
 pub(crate) use export::ExportArgs;
+pub(crate) use lifetime::LifetimeArgs;
 pub(crate) use member_pick::MemberPick;
 pub(crate) use optimize::OptimizeArgs;
 pub(crate) use run_view::{LookArgs, PlotArgs, ReportArgs, ViewArgs};
@@ -161,6 +163,15 @@ pub(crate) enum Command {
     /// Example: navwalker separation delta:55:182/13/1@925 --all-phasings
     #[command(verbatim_doc_comment)]
     Separation(SeparationArgs),
+
+    /// Show what years do to the shells of a design: rates beyond J2, drag, slot keeping, decay, and errors of injection.
+    ///
+    /// By closed forms from mean elements, with the mean atmosphere of NRLMSISE-00 at low, moderate and high solar activity
+    /// (F10.7 of 65, 140 and 250). Single seasons and planes have 0.54 to 1.46 times the mean density.
+    ///
+    /// Example: navwalker lifetime delta:55:182/13/1@925 --mass-kg 150 --area-m2 1.5
+    #[command(verbatim_doc_comment)]
+    Lifetime(LifetimeArgs),
 
     /// Reproduce published numbers: those of the paper that this program implements, or of other studies.
     ///

@@ -5,6 +5,7 @@ pub(crate) mod dop;
 pub(crate) mod evaluate;
 pub(crate) mod export;
 pub(crate) mod help;
+pub(crate) mod lifetime;
 pub(crate) mod lint;
 pub(crate) mod optimize;
 pub(crate) mod orbit;

@@ -2,13 +2,11 @@
 
 use super::{Design, DesignError, Orientation, Pattern, Shell, Slot};
 use crate::orbit::j2::SecularRates;
-use crate::units::SECONDS_PER_DAY;
+use crate::units::{DAYS_PER_YEAR, SECONDS_PER_DAY};
 use thiserror::Error;
 
 /// Shells that turn against each other by less than this stay as they are for all purposes of a design, degrees a year.
 const SLOWEST_DEG_PER_YEAR: f64 = 1.0;
-
-const DAYS_PER_YEAR: f64 = 365.25;
 
 /// The nodes of two shells with respect to each other, under secular J2.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -156,3 +156,67 @@ fn a_search_follows_the_ground_track() {
     let told = refused(&["orbit", "delta:55:1/1/0@repeat:15"]);
     assert!(told.contains("repeat:REVOLUTIONS/DAYS"), "{told}");
 }
+
+/// What first-order J2 is off by in five years, known beforehand; what neither rule of disposal lets stay up; and a lifetime by an
+/// integration in numbers of the other formats.
+#[test]
+fn validate_what_years_do_to_a_design() {
+    let found = json(&["lifetime", "delta:40:182/13/1@925", "delta:55:182/13/1@925"]);
+    let shell = |n: usize| &found[n]["shells"][0];
+    for (n, expected_deg) in [(0, 20.0), (1, 0.2)] {
+        let off = shell(n)["node_off_in_5_years_deg"].as_f64().unwrap();
+        // One digit is known.
+        assert!((off.abs() / expected_deg - 1.0).abs() < 0.1, "{off}");
+    }
+    let drag = shell(1)["drag"].as_array().unwrap();
+    let of = |n: usize, key: &str| drag[n][key].as_f64().unwrap();
+    assert_eq!(drag.len(), 3);
+    for n in 0..3 {
+        // At 925 km neither 5 nor 25 years are kept without help.
+        assert!(of(n, "decay_years") > 25.0);
+        let altitudes = &drag[n]["disposal_altitude_km"];
+        let lower = altitudes[0].as_f64().unwrap();
+        assert!(lower < altitudes[1].as_f64().unwrap() && lower > 300.0);
+        assert!(drag[n]["disposal_m_s"][0].as_f64() > drag[n]["disposal_m_s"][1].as_f64());
+    }
+    assert!(of(0, "decay_years") > of(1, "decay_years"));
+    let place = TempDir::new().unwrap();
+    let csv = ran(
+        place.path(),
+        &["lifetime", HYBRID, "--format", "csv", "--mass-kg", "100"],
+    )
+    .stdout;
+    // A header, and three activities for each of two shells.
+    assert_eq!(csv.lines().count(), 7, "{csv}");
+    let text = ran(place.path(), &["lifetime", HYBRID]).stdout;
+    assert!(text.contains("node of B against that of A: +3.4"), "{text}");
+    let ellipse = ran(place.path(), &["lifetime", "lattice:63:4/2/1@1500,e=0.1"]).stdout;
+    assert!(ellipse.contains("of circular orbits only"), "{ellipse}");
+}
+
+#[test]
+fn lifetimes_that_cannot_be_are_refused() {
+    for (arguments, told) in [
+        (&["lifetime"][..], "required"),
+        (
+            &["lifetime", "delta:55:6/3/1@925", "--mass-kg", "0"],
+            "the mass in kg must be above 0",
+        ),
+        (
+            &["lifetime", "delta:55:6/3/1@925", "--area-m2", "-1"],
+            "the area in m² must be above 0",
+        ),
+        (
+            &["lifetime", "delta:55:6/3/1@925", "--box-km", "0"],
+            "kilometres above 0",
+        ),
+        (&["lifetime", "delta:55:6/3/1@110"], "is in the atmosphere"),
+        (
+            &["lifetime", "lattice:63:4/2/1@1500,e=0.2"],
+            "is in the atmosphere",
+        ),
+    ] {
+        let error = refused(arguments);
+        assert!(error.contains(told), "{arguments:?}: {error}");
+    }
+}

@@ -10,6 +10,9 @@ use std::fmt::Write;
 /// Characters of a value that are shown.
 const MOST_SHOWN: usize = 40;
 
+/// Words of a command line that are shown even if both have them.
+const KEPT_WORDS: usize = 2;
+
 impl Diff {
     /// What differs in where the sides come from, what moved by quantity, and the count of all.
     #[must_use]
@@ -38,6 +41,10 @@ impl Diff {
 
     fn total(&self) -> String {
         let values = self.compared.values().sum();
+        if values == 0 {
+            return "no values to compare; files of other kinds are compared by their bytes"
+                .to_owned();
+        }
         let compared = format!(
             "{} in {}",
             counted(values, "value"),
@@ -134,10 +141,37 @@ fn origins(a: &ResultProvenance, b: &ResultProvenance) -> Table {
             table.row([name.to_owned(), a, b]);
         }
     }
+    if a.command != b.command {
+        let [one, other] = [a, b].map(|of| of.command.as_deref().unwrap_or_default());
+        let [one, other] = apart(one, other);
+        table.row(["command".to_owned(), one, other]);
+    }
     table
 }
 
-fn facts(of: &ResultProvenance) -> [(&'static str, String); 6] {
+/// What two command lines do not share; the words that they begin with, the program and its command, are kept.
+fn apart(one: &[String], other: &[String]) -> [String; 2] {
+    let shortest = one.len().min(other.len());
+    let shared = |pairs: &mut dyn Iterator<Item = (&String, &String)>| {
+        pairs.take_while(|(one, other)| one == other).count()
+    };
+    let first = shared(&mut one.iter().zip(other));
+    let last = shared(&mut one.iter().rev().zip(other.iter().rev())).min(shortest - first);
+    [one, other].map(|words| {
+        let kept = first.min(KEPT_WORDS);
+        let mut shown: Vec<_> = words[..kept].iter().map(String::as_str).collect();
+        if first > kept {
+            shown.push("…");
+        }
+        shown.extend(words[first..words.len() - last].iter().map(String::as_str));
+        if last > 0 {
+            shown.push("…");
+        }
+        shown.join(" ")
+    })
+}
+
+fn facts(of: &ResultProvenance) -> [(&'static str, String); 5] {
     let scenarios = of.scenarios.iter().map(|one| {
         let hash = one.hash.get(..8).unwrap_or(&one.hash);
         format!("{} ({hash})", one.name)
@@ -149,11 +183,39 @@ fn facts(of: &ResultProvenance) -> [(&'static str, String); 6] {
         ("platform", of.platform.clone()),
         ("instruction set", of.instruction_set.clone()),
         ("scenario", scenarios.collect::<Vec<_>>().join(", ")),
-        (
-            "command",
-            of.command
-                .as_ref()
-                .map_or_else(none, |words| words.join(" ")),
-        ),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn command_lines_are_told_apart() {
+        let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
+        for (one, other, shown) in [
+            (
+                "navwalker optimize paper --seed 1 --set a=1",
+                "navwalker optimize paper --seed 2 --set a=1",
+                ["navwalker optimize … 1 …", "navwalker optimize … 2 …"],
+            ),
+            (
+                "navwalker sweep",
+                "navwalker sweep --as csv",
+                ["navwalker sweep", "navwalker sweep --as csv"],
+            ),
+            (
+                "navwalker optimize --seed 1",
+                "navwalker sweep --seed 1",
+                ["navwalker optimize …", "navwalker sweep …"],
+            ),
+            (
+                "navwalker plot a a",
+                "navwalker plot a",
+                ["navwalker plot … a", "navwalker plot …"],
+            ),
+        ] {
+            assert_eq!(apart(&words(one), &words(other)), shown.map(str::to_owned));
+        }
+    }
 }
