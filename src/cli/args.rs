@@ -4,6 +4,7 @@ mod diff;
 mod evaluate;
 mod export;
 mod lifetime;
+mod lint;
 mod member_pick;
 mod optimize;
 mod products;
@@ -19,6 +20,7 @@ pub(crate) use diff::DiffArgs;
 pub(crate) use evaluate::EvaluateArgs;
 pub(crate) use export::ExportArgs;
 pub(crate) use lifetime::LifetimeArgs;
+pub(crate) use lint::LintArgs;
 pub(crate) use member_pick::MemberPick;
 pub(crate) use optimize::OptimizeArgs;
 pub(crate) use run_view::{LookArgs, PlotArgs, ReportArgs, ViewArgs};
@@ -478,21 +480,6 @@ pub(crate) struct ValidateArgs {
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: ReportFormat,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct LintArgs {
-    /// Files to check.
-    #[arg(value_name = "FILE", required = true)]
-    pub(crate) files: Vec<PathBuf>,
-
-    /// Check against this format instead of the detected one.
-    #[arg(long = "as", value_name = "FORMAT")]
-    pub(crate) format: Option<crate::exchange::lint::Format>,
-
-    /// Output format.
-    #[arg(long = "format", value_enum, default_value = "text")]
-    pub(crate) output: OutputFormat,
 }
 
 /// A number of threads; how many there may be is known when they start.

@@ -20,14 +20,14 @@ keywords! {
 }
 
 /// A line of the table: altitude in km, and the logarithm of the density in kg/m³ at each activity.
-type Line = (f64, [f64; 3]);
+type DensityLine = (f64, [f64; 3]);
 
-static TABLE: LazyLock<Vec<Line>> = LazyLock::new(|| {
+static TABLE: LazyLock<Vec<DensityLine>> = LazyLock::new(|| {
     let lines = DENSITIES.lines().filter(|line| !line.starts_with('#'));
     lines.filter_map(line).collect()
 });
 
-fn line(text: &str) -> Option<Line> {
+fn line(text: &str) -> Option<DensityLine> {
     let mut numbers = text.split(' ').map_while(|word| word.parse::<f64>().ok());
     let altitude_km = numbers.next()?;
     let mut density = || Some(numbers.next()?.ln());

@@ -13,7 +13,7 @@ use crate::orbit::injection::InjectionSpread;
 use crate::orbit::j2::SecularRates;
 use crate::run::columns::optional;
 use crate::run::tables::text;
-use crate::units::{DAYS_PER_YEAR, SECONDS_PER_DAY};
+use crate::units::{DAYS_PER_YEAR, SECONDS_PER_DAY, round_decimal};
 use ::csv::Writer;
 use serde::Serialize;
 use std::fmt::Write;
@@ -264,9 +264,9 @@ fn shell_text(text: &mut String, design: &DesignLifetime, shell: &ShellLifetime)
         text,
         "{}\n\nrate of the node {:+.5} deg/day by J2, {:+.5} with J2² and J4: {:+.2} deg in 5 years",
         shell.notation,
-        shell.node_j2_deg_per_day,
-        shell.node_zonal_deg_per_day,
-        shell.node_off_in_5_years_deg
+        round_decimal(shell.node_j2_deg_per_day, 5),
+        round_decimal(shell.node_zonal_deg_per_day, 5),
+        round_decimal(shell.node_off_in_5_years_deg, 2)
     );
     let _ = writeln!(
         text,
@@ -277,7 +277,7 @@ fn shell_text(text: &mut String, design: &DesignLifetime, shell: &ShellLifetime)
         text.push_str("drag and decay: of circular orbits only\n");
     } else {
         let craft = design.ballistic_m2_kg;
-        let _ = writeln!(text, "drag, with {craft:.4} m²/kg");
+        let _ = writeln!(text, "drag, for C_D A/m = {craft:.4} m²/kg");
         text.push_str(&drag_table(design, &shell.drag).to_text());
     }
     if let Some(deorbit) = shell.deorbit_m_s {

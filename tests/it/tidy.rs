@@ -223,6 +223,7 @@ fn data_of_others_are_listed_with_their_checksums() {
         "coastline",
         "countries",
         "earth-rotation",
+        "atmosphere",
         "typeface",
     ];
     check_manifest("data", &folders);

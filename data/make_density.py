@@ -2,7 +2,7 @@
 """Writes the mean density of the upper atmosphere at three levels of solar activity, as atmosphere/density.txt has it.
 
     pip install brahe==1.8.0
-    python3 make_density.py > density.txt
+    python3 make_density.py > atmosphere/density.txt
 
 NRLMSISE-00 (Picone et al., J. Geophys. Res. 107 (2002) 1468) as in brahe, averaged over the globe by area, over local
 time and over the year. Activities are the long-term ones of ECSS-E-ST-10-04C: F10.7 (daily and of 81 days) and Ap 65, 0
