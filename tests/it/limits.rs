@@ -195,7 +195,7 @@ fn peak_bytes(words: &str) -> (u64, String) {
 }
 
 /// What is told before the work is what the work takes, of a globe of one degree: as a tile, with the GNSS, whose sums are not kept, and as a
-/// stream of more values than are kept. The program itself has 36 MB beside it; two thirds of what is told may not be needed.
+/// stream of more values than are kept. The program itself has 36 MB beside it, and an allocator keeps some more; two thirds of what is told may not be needed.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_memory_that_is_told_is_the_memory_that_is_taken() {
@@ -212,7 +212,7 @@ fn the_memory_that_is_told_is_the_memory_that_is_taken() {
         set.join(" ")
     );
     let check = |words: &str, told: u64, taken: u64| {
-        let most = told + 45_000_000;
+        let most = told + told / 4 + 60_000_000;
         assert!(taken <= most, "{words}: {told} told, {taken} taken");
         assert!(3 * taken >= told, "{words}: {told} told, {taken} taken");
     };

@@ -157,8 +157,7 @@ fn a_search_follows_the_ground_track() {
     assert!(told.contains("repeat:REVOLUTIONS/DAYS"), "{told}");
 }
 
-/// What first-order J2 is off by in five years, known beforehand; what neither rule of disposal lets stay up; and a lifetime by an
-/// integration in numbers of the other formats.
+/// What first-order J2 is off by in five years, known beforehand, and what drag and the rules of disposal ask for.
 #[test]
 fn validate_what_years_do_to_a_design() {
     let found = json(&["lifetime", "delta:40:182/13/1@925", "delta:55:182/13/1@925"]);
@@ -169,17 +168,17 @@ fn validate_what_years_do_to_a_design() {
         assert!((off.abs() / expected_deg - 1.0).abs() < 0.1, "{off}");
     }
     let drag = shell(1)["drag"].as_array().unwrap();
-    let of = |n: usize, key: &str| drag[n][key].as_f64().unwrap();
     assert_eq!(drag.len(), 3);
-    for n in 0..3 {
-        // At 925 km neither 5 nor 25 years are kept without help.
-        assert!(of(n, "decay_years") > 25.0);
-        let altitudes = &drag[n]["disposal_altitude_km"];
-        let lower = altitudes[0].as_f64().unwrap();
-        assert!(lower < altitudes[1].as_f64().unwrap() && lower > 300.0);
-        assert!(drag[n]["disposal_m_s"][0].as_f64() > drag[n]["disposal_m_s"][1].as_f64());
+    let mut years = Vec::new();
+    for one in drag {
+        let of = |key: &str, n: usize| one[key][n].as_f64().unwrap();
+        years.push(one["decay_years"].as_f64().unwrap());
+        let [lower, higher] = [0, 1].map(|n| of("disposal_altitude_km", n));
+        assert!(300.0 < lower && lower < higher && higher < 925.0);
+        assert!(of("disposal_m_s", 0) > of("disposal_m_s", 1));
     }
-    assert!(of(0, "decay_years") > of(1, "decay_years"));
+    // At 925 km neither 5 nor 25 years are kept without help, and a more active Sun brings satellites down sooner.
+    assert!(years.is_sorted_by(|one, next| one > next) && years[2] > 25.0);
     let place = TempDir::new().unwrap();
     let csv = ran(
         place.path(),
@@ -213,7 +212,7 @@ fn lifetimes_that_cannot_be_are_refused() {
         ),
         (&["lifetime", "delta:55:6/3/1@110"], "is in the atmosphere"),
         (
-            &["lifetime", "lattice:63:4/2/1@1500,e=0.2"],
+            &["lifetime", "lattice:63:4/2/1@1500,e=0.18"],
             "is in the atmosphere",
         ),
     ] {

@@ -14,7 +14,7 @@ pub(super) const FEW: u32 = 5;
 
 /// A sample of an instant: the point in a lane of a tile.
 #[derive(Debug, Clone, Copy)]
-struct Slot {
+struct CoarsePoint {
     tile: usize,
     lane: usize,
 }
@@ -22,7 +22,7 @@ struct Slot {
 /// Up to sixteen samples side by side.
 #[derive(Debug, Clone)]
 struct Batch {
-    slots: [Option<Slot>; LANES],
+    slots: [Option<CoarsePoint>; LANES],
     sums: Sums<f64>,
     /// The number of the tile if all are of one, each in its lane.
     whole: Option<usize>,
@@ -53,7 +53,7 @@ impl Batch {
 
     /// Makes room for a sample, and returns its place.
     #[inline(always)]
-    fn push(&mut self, slot: Slot, fixed: &FixedTile<'_>) -> usize {
+    fn push(&mut self, slot: CoarsePoint, fixed: &FixedTile<'_>) -> usize {
         let place = self.count % LANES;
         self.fixed.set(place, fixed, slot.lane);
         self.slots[place] = Some(slot);
@@ -112,7 +112,7 @@ impl Batches {
         let batch = &mut self.batches[number];
         batch.whole = Some(tile);
         for (lane, slot) in batch.slots.iter_mut().enumerate() {
-            *slot = (wanted.0[lane] != 0).then_some(Slot { tile, lane });
+            *slot = (wanted.0[lane] != 0).then_some(CoarsePoint { tile, lane });
         }
         batch
     }
@@ -142,7 +142,7 @@ impl Judging<'_> {
     fn sum_point<W: Weighting>(&self, lane: usize, out: &mut SampleOutcome) {
         let (scene, tile) = (self.scene, self.number);
         let batch = out.coarse.with_room();
-        let place = batch.push(Slot { tile, lane }, self.fixed);
+        let place = batch.push(CoarsePoint { tile, lane }, self.fixed);
         let (points, sums) = (&scene.tiles.tiles[tile], &mut batch.sums);
         let satellites = self.candidates.satellites();
         if points.sky.is_none() {
@@ -179,7 +179,7 @@ impl Begun<'_> {
             let system = NormalLanes::new::<W>(&batch.sums, &batch.fixed(fixed));
             let double = system.pdop(limits.clocks);
             for (place, slot) in batch.slots.iter().enumerate() {
-                let Some(Slot { tile, lane }) = *slot else {
+                let Some(CoarsePoint { tile, lane }) = *slot else {
                     continue;
                 };
                 let pdop = double.0[place];
