@@ -57,8 +57,8 @@ pub use expected::{ExpectedService, SpareService};
 pub use from_evaluations::{EvaluatedFront, EvaluationSource, NotEvaluated};
 pub use labels::quantity_label;
 pub use lifetime::{
-    DesignLifetime, DragResult, InjectionResult, LifetimeOptions, ShellLifetime, lifetimes_csv,
-    lifetimes_text,
+    DesignLifetime, DisposalResult, DragResult, InjectionResult, LifetimeOptions, ShellLifetime,
+    lifetimes_csv, lifetimes_text,
 };
 pub use orbits::{OrbitResult, RepeatResult, orbits_csv, orbits_text};
 #[cfg(feature = "cli")]

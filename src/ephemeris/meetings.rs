@@ -288,8 +288,7 @@ mod tests {
         let design: Design = "star:90:24/6/0@925".parse().unwrap();
         let orbit = crate::orbit::j2::SecularOrbit::j2(&design.shells()[0].elements(Slot::FIRST));
         let rates = orbit.rates();
-        let quarter_s =
-            std::f64::consts::FRAC_PI_2 / (rates.mean_anomaly_rad_s + rates.arg_perigee_rad_s);
+        let quarter_s = std::f64::consts::FRAC_PI_2 / rates.arg_latitude_rad_s();
         let meeting = found("star:90:24/6/0@925", grid(2.5 * quarter_s, quarter_s)).unwrap();
         // Six satellites at either pole, fifteen pairs each, at the second of the three samples.
         assert_eq!((meeting.count, meeting.first.elapsed_s), (30, quarter_s));

@@ -210,7 +210,7 @@ fn angles(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<AlmanacAngle
                 raan_rad: elements.raan_rad,
                 raan_rate_rad_s: rates.raan_rad_s,
                 latitude_argument_rad: elements.arg_perigee_rad + elements.mean_anomaly_rad,
-                latitude_argument_rate_rad_s: rates.arg_perigee_rad_s + rates.mean_anomaly_rad_s,
+                latitude_argument_rate_rad_s: rates.arg_latitude_rad_s(),
             })
         }
         GnssOrbit::Geosynchronous(orbit) => Ok(AlmanacAngles {

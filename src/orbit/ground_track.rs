@@ -38,7 +38,7 @@ impl GroundTrack {
     pub fn of(elements: &MeanElements) -> Self {
         let rates = SecularRates::j2(elements);
         Self {
-            nodal_period_s: TAU / (rates.mean_anomaly_rad_s + rates.arg_perigee_rad_s),
+            nodal_period_s: TAU / rates.arg_latitude_rad_s(),
             nodal_day_s: TAU / (GMST_RATE_RAD_S - rates.raan_rad_s),
         }
     }

@@ -52,6 +52,12 @@ impl SecularRates {
             mean_anomaly_rad_s: n + g * eta2.sqrt() * (1.0 - 1.5 * sin_i * sin_i),
         }
     }
+
+    /// Of the argument of latitude, rad/s.
+    #[must_use]
+    pub fn arg_latitude_rad_s(&self) -> f64 {
+        self.arg_perigee_rad_s + self.mean_anomaly_rad_s
+    }
 }
 
 /// A satellite whose mean elements advance at constant rates.

@@ -188,7 +188,7 @@ pub(crate) fn first_closest_s(one: &MeanElements, other: &MeanElements) -> f64 {
     let rates = SecularOrbit::j2(one).rates();
     let arguments = [one, other].map(MeanElements::mean_argument_of_latitude_rad);
     let half_way = 0.5 * (arguments[0] + arguments[1]);
-    (0.5 * PI - half_way).rem_euclid(PI) / (rates.mean_anomaly_rad_s + rates.arg_perigee_rad_s)
+    (0.5 * PI - half_way).rem_euclid(PI) / rates.arg_latitude_rad_s()
 }
 
 #[cfg(test)]

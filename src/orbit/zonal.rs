@@ -52,12 +52,6 @@ impl SecularRates {
             mean_anomaly_rad_s: n * (1.0 + mean_anomaly),
         }
     }
-
-    /// Of the argument of latitude, rad/s.
-    #[must_use]
-    pub fn arg_latitude_rad_s(&self) -> f64 {
-        self.arg_perigee_rad_s + self.mean_anomaly_rad_s
-    }
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! What years do to the shells of a design, as text, JSON and CSV.
 
 use super::{Align, Table};
+use crate::constellation::relative_nodes::RelativeNode;
 use crate::constellation::{Design, Shell, Slot, shell_letters};
 use crate::keyword::Keyword;
 use crate::orbit::MeanElements;
-use crate::orbit::atmosphere::SolarActivity;
+use crate::orbit::atmosphere::{ALTITUDES_KM, SolarActivity};
 use crate::orbit::drag::{
     DEORBIT_PERIGEE_KM, DragError, DragOrbit, DragSpacecraft, REENTRY_ALTITUDE_KM, hohmann_m_s,
     perigee_lowering_m_s,
@@ -96,10 +97,19 @@ pub struct DragResult {
     pub keeping_m_s: Option<f64>,
     /// Until it is down without control, years.
     pub decay_years: Option<f64>,
-    /// The circular altitudes from which it comes down in 5 and in 25 years, km.
-    pub disposal_altitude_km: [Option<f64>; 2],
-    /// What lowering to them takes, m/s.
-    pub disposal_m_s: [Option<f64>; 2],
+    /// What it takes to be down within 5 and within 25 years.
+    pub disposals: [DisposalResult; 2],
+}
+
+/// A circular altitude low enough to be down within some years.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DisposalResult {
+    /// The years.
+    pub years: f64,
+    /// The highest such altitude, km.
+    pub altitude_km: Option<f64>,
+    /// What lowering to it takes, m/s; 0 if that is where the shell is.
+    pub delta_v_m_s: Option<f64>,
 }
 
 /// What errors of injection do, one sigma.
@@ -138,8 +148,8 @@ impl DesignLifetime {
             .map(|shell| ShellLifetime::of(shell, options))
             .collect();
         let shells = shells?;
-        let pairs = (0..shells.len()).flat_map(|n| (n + 1..shells.len()).map(move |m| [n, m]));
-        let relative_nodes = pairs.map(|pair| RelativeNodeRates::of(&shells, pair));
+        let pairs = RelativeNode::all_of(design).into_iter();
+        let relative_nodes = pairs.map(|pair| RelativeNodeRates::of(&shells, &pair));
         Ok(Self {
             notation: design.to_string(),
             ballistic_m2_kg: options.spacecraft.ballistic_m2_kg(),
@@ -153,12 +163,12 @@ impl DesignLifetime {
 }
 
 impl RelativeNodeRates {
-    fn of(shells: &[ShellLifetime], pair: [usize; 2]) -> Self {
-        let [one, other] = pair.map(|n| &shells[n]);
+    fn of(shells: &[ShellLifetime], pair: &RelativeNode) -> Self {
+        let [one, other] = pair.shells.map(|n| shells[n].node_zonal_deg_per_day);
         Self {
-            shells: pair.map(shell_letters),
-            j2_deg_per_day: other.node_j2_deg_per_day - one.node_j2_deg_per_day,
-            zonal_deg_per_day: other.node_zonal_deg_per_day - one.node_zonal_deg_per_day,
+            shells: pair.shells.map(shell_letters),
+            j2_deg_per_day: pair.rate_deg_per_day,
+            zonal_deg_per_day: other - one,
         }
     }
 }
@@ -172,43 +182,61 @@ impl ShellLifetime {
         let faster = zonal.arg_latitude_rad_s() - j2.arg_latitude_rad_s();
         let shift_km =
             faster / (1.5 * elements.kepler_mean_motion_rad_s()) * elements.semi_major_axis_km;
-        let circular = shell.eccentricity() == 0.0;
-        let drag = DragResult::of_shell(shell, &elements, options)?;
         Ok(Self {
             notation: Design::from(*shell).to_string(),
             node_j2_deg_per_day: node_j2,
             node_zonal_deg_per_day: node_zonal,
             node_off_in_5_years_deg: (node_zonal - node_j2) * COMPARED_YEARS * DAYS_PER_YEAR,
             semi_major_axis_shift_m: shift_km * 1e3,
-            drag: if circular { drag } else { Vec::new() },
-            deorbit_m_s: circular
+            drag: DragResult::of_shell(shell, &elements, options)?,
+            deorbit_m_s: is_circular(shell)
                 .then(|| perigee_lowering_m_s(shell.altitude_km(), DEORBIT_PERIGEE_KM)),
             injection: InjectionResult::of(&elements, options),
         })
     }
 }
 
+fn is_circular(shell: &Shell) -> bool {
+    shell.eccentricity() == 0.0
+}
+
 impl DragResult {
+    /// At each activity; none on an ellipse, whose perigee must be above the atmosphere all the same.
     fn of_shell(
         shell: &Shell,
         elements: &MeanElements,
         options: &LifetimeOptions,
     ) -> Result<Vec<Self>, DragError> {
+        let perigee_km = shell.altitude_km() - elements.semi_major_axis_km * elements.eccentricity;
+        let orbit = |activity: SolarActivity| {
+            let craft = options.spacecraft;
+            DragOrbit::new(perigee_km, elements.inclination_rad, craft, activity)
+        };
+        if !is_circular(shell) {
+            return orbit(SolarActivity::Low).map(|_| Vec::new());
+        }
         let of = |activity: &SolarActivity| {
-            // On ellipses the perigee must be above the atmosphere, too.
-            let lowest_km =
-                shell.altitude_km() - elements.semi_major_axis_km * elements.eccentricity;
-            let (inclination, craft) = (elements.inclination_rad, options.spacecraft);
-            DragOrbit::new(lowest_km, inclination, craft, *activity)
-                .map(|orbit| Self::of(&orbit, lowest_km, *activity, options.box_km))
+            let orbit = orbit(*activity)?;
+            Ok(Self::of(
+                &orbit,
+                shell.altitude_km(),
+                *activity,
+                options.box_km,
+            ))
         };
         SolarActivity::ALL.iter().map(of).collect()
     }
 
     fn of(orbit: &DragOrbit, altitude_km: f64, activity: SolarActivity, box_km: f64) -> Self {
         let keeping = orbit.slot_keeping(box_km);
-        let disposal_altitude_km =
-            RULES_YEARS.map(|years| orbit.altitude_of_decay_within_km(years));
+        let disposal = |years| {
+            let to_km = orbit.altitude_of_decay_within_km(years);
+            DisposalResult {
+                years,
+                altitude_km: to_km,
+                delta_v_m_s: to_km.map(|to_km| hohmann_m_s(altitude_km, to_km)),
+            }
+        };
         Self {
             activity: activity.to_string(),
             density_kg_m3: orbit.density_kg_m3(),
@@ -217,8 +245,7 @@ impl DragResult {
             keeping_interval_days: keeping.map(|of| of.interval_days),
             keeping_m_s: keeping.map(|of| of.delta_v_m_s),
             decay_years: orbit.years_down_to(REENTRY_ALTITUDE_KM),
-            disposal_altitude_km,
-            disposal_m_s: disposal_altitude_km.map(|to| Some(hohmann_m_s(altitude_km, to?))),
+            disposals: RULES_YEARS.map(disposal),
         }
     }
 }
@@ -262,7 +289,7 @@ pub fn lifetimes_text(designs: &[DesignLifetime]) -> String {
 fn shell_text(text: &mut String, design: &DesignLifetime, shell: &ShellLifetime) {
     let _ = writeln!(
         text,
-        "{}\n\nrate of the node {:+.5} deg/day by J2, {:+.5} with J2² and J4: {:+.2} deg in 5 years",
+        "{}\n\nrate of the node {:+.5} deg/day by J2, {:+.5} with J2² and J4: a difference of {:+.2} deg in 5 years",
         shell.notation,
         round_decimal(shell.node_j2_deg_per_day, 5),
         round_decimal(shell.node_zonal_deg_per_day, 5),
@@ -274,11 +301,18 @@ fn shell_text(text: &mut String, design: &DesignLifetime, shell: &ShellLifetime)
         shell.semi_major_axis_shift_m
     );
     if shell.drag.is_empty() {
-        text.push_str("drag and decay: of circular orbits only\n");
+        text.push_str("drag and decay are computed for circular orbits only\n");
     } else {
         let craft = design.ballistic_m2_kg;
         let _ = writeln!(text, "drag, for C_D A/m = {craft:.4} m²/kg");
         text.push_str(&drag_table(design, &shell.drag).to_text());
+        if shell.drag.iter().any(|of| of.density_kg_m3.is_none()) {
+            let top_km = ALTITUDES_KM[1];
+            let _ = writeln!(
+                text,
+                "-: above {top_km} km the density is not tabulated, and drag does not matter"
+            );
+        }
     }
     if let Some(deorbit) = shell.deorbit_m_s {
         let _ = writeln!(
@@ -336,10 +370,10 @@ fn drag_table(design: &DesignLifetime, drag: &[DragResult]) -> Table {
     );
     for (n, years) in RULES_YEARS.iter().enumerate() {
         row(format!("down within {years} years from (km)"), &|of| {
-            fixed(of.disposal_altitude_km[n], 0)
+            fixed(of.disposals[n].altitude_km, 0)
         });
         row("lowering to there takes (m/s)".into(), &|of| {
-            fixed(of.disposal_m_s[n], 1)
+            fixed(of.disposals[n].delta_v_m_s, 1)
         });
     }
     table
@@ -424,10 +458,10 @@ fn drag_cells(drag: &[DragResult]) -> Vec<Vec<String>> {
             of.keeping_interval_days,
             of.keeping_m_s,
             of.decay_years,
-            of.disposal_altitude_km[0],
-            of.disposal_m_s[0],
-            of.disposal_altitude_km[1],
-            of.disposal_m_s[1],
+            of.disposals[0].altitude_km,
+            of.disposals[0].delta_v_m_s,
+            of.disposals[1].altitude_km,
+            of.disposals[1].delta_v_m_s,
         ];
         std::iter::once(of.activity.clone())
             .chain(numbers.map(optional))

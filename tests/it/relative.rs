@@ -171,11 +171,12 @@ fn validate_what_years_do_to_a_design() {
     assert_eq!(drag.len(), 3);
     let mut years = Vec::new();
     for one in drag {
-        let of = |key: &str, n: usize| one[key][n].as_f64().unwrap();
+        let of = |n: usize, key: &str| one["disposals"][n][key].as_f64().unwrap();
         years.push(one["decay_years"].as_f64().unwrap());
-        let [lower, higher] = [0, 1].map(|n| of("disposal_altitude_km", n));
+        assert_eq!([0, 1].map(|n| of(n, "years")), [5.0, 25.0]);
+        let [lower, higher] = [0, 1].map(|n| of(n, "altitude_km"));
         assert!(300.0 < lower && lower < higher && higher < 925.0);
-        assert!(of("disposal_m_s", 0) > of("disposal_m_s", 1));
+        assert!(of(0, "delta_v_m_s") > of(1, "delta_v_m_s"));
     }
     // At 925 km neither 5 nor 25 years are kept without help, and a more active Sun brings satellites down sooner.
     assert!(years.is_sorted_by(|one, next| one > next) && years[2] > 25.0);
@@ -191,7 +192,9 @@ fn validate_what_years_do_to_a_design() {
     assert!(text.contains("node of B against that of A: +3.4"), "{text}");
     assert!(!text.contains("-0.00000"), "{text}");
     let ellipse = ran(place.path(), &["lifetime", "lattice:63:4/2/1@1500,e=0.1"]).stdout;
-    assert!(ellipse.contains("of circular orbits only"), "{ellipse}");
+    assert!(ellipse.contains("for circular orbits only"), "{ellipse}");
+    let high = ran(place.path(), &["lifetime", "delta:55:4/2/1@1600"]).stdout;
+    assert!(high.contains("above 1500 km the density"), "{high}");
 }
 
 #[test]

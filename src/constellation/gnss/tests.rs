@@ -75,7 +75,7 @@ fn elements(preset: Preset) -> Vec<crate::orbit::MeanElements> {
 /// Degrees by which the ground track misses itself after revolutions from node to node.
 fn track_shift_deg(preset: Preset, revolutions: f64, sidereal_days: f64) -> f64 {
     let rates = SecularRates::j2(&elements(preset)[0]);
-    let nodal_s = TAU / (rates.mean_anomaly_rad_s + rates.arg_perigee_rad_s);
+    let nodal_s = TAU / rates.arg_latitude_rad_s();
     let turned = (GMST_RATE_RAD_S - rates.raan_rad_s) * nodal_s * revolutions;
     (sidereal_days * TAU - turned).to_degrees()
 }
@@ -110,7 +110,7 @@ fn validate_gps_node_rate() {
 #[test]
 fn validate_glonass_period() {
     let rates = SecularRates::j2(&elements(Preset::Glonass)[0]);
-    let nodal_s = TAU / (rates.mean_anomaly_rad_s + rates.arg_perigee_rad_s);
+    let nodal_s = TAU / rates.arg_latitude_rad_s();
     assert!((nodal_s - 40_544.0).abs() < 5.0, "{nodal_s}");
 }
 

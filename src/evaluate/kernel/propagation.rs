@@ -258,7 +258,7 @@ impl PatternPropagator {
         }
         let (sin_i, cos_i) = first.inclination_rad.sin_cos();
         let phase_rate_rad_s = match eccentricity {
-            0.0 => rates.arg_perigee_rad_s + rates.mean_anomaly_rad_s,
+            0.0 => rates.arg_latitude_rad_s(),
             _ => rates.mean_anomaly_rad_s,
         };
         Some(Self {

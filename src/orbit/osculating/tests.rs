@@ -154,7 +154,7 @@ fn validate_radius_shift() {
         let mean = elements(925.0, 0.0, inclination_deg);
         let orbit = OsculatingOrbit::new(&mean);
         let rates = orbit.secular.rates();
-        let nodal_s = TAU / (rates.mean_anomaly_rad_s + rates.arg_perigee_rad_s);
+        let nodal_s = TAU / rates.arg_latitude_rad_s();
         let samples = 360;
         let sum: f64 = (0..samples)
             .map(|k| orbit.state(nodal_s * f64::from(k) / f64::from(samples)))
