@@ -70,6 +70,8 @@ pub struct ShellLifetime {
     pub node_zonal_deg_per_day: f64,
     /// By how much the node differs after five years, degrees.
     pub node_off_in_5_years_deg: f64,
+    /// Rates of the argument of perigee; `None` on a circle, which has none.
+    pub perigee: Option<PerigeeRates>,
     /// Shift of the mean semi-major axis that keeps the period of J2 with J2² and J4, m.
     pub semi_major_axis_shift_m: f64,
     /// At low, moderate and high solar activity; none on ellipses.
@@ -78,6 +80,15 @@ pub struct ShellLifetime {
     pub deorbit_m_s: Option<f64>,
     /// What errors of injection do.
     pub injection: InjectionResult,
+}
+
+/// How fast the perigee of an ellipse turns.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PerigeeRates {
+    /// Under secular J2, as designs have it, degrees a day.
+    pub j2_deg_per_day: f64,
+    /// With J2² and J4, degrees a day.
+    pub zonal_deg_per_day: f64,
 }
 
 /// A shell in the atmosphere of a solar activity; what needs a density is `None` above 1500 km.
@@ -187,6 +198,10 @@ impl ShellLifetime {
             node_j2_deg_per_day: node_j2,
             node_zonal_deg_per_day: node_zonal,
             node_off_in_5_years_deg: (node_zonal - node_j2) * COMPARED_YEARS * DAYS_PER_YEAR,
+            perigee: (!is_circular(shell)).then(|| PerigeeRates {
+                j2_deg_per_day: per_day(j2.arg_perigee_rad_s),
+                zonal_deg_per_day: per_day(zonal.arg_perigee_rad_s),
+            }),
             semi_major_axis_shift_m: shift_km * 1e3,
             drag: DragResult::of_shell(shell, &elements, options)?,
             deorbit_m_s: is_circular(shell)
@@ -295,6 +310,14 @@ fn shell_text(text: &mut String, design: &DesignLifetime, shell: &ShellLifetime)
         round_decimal(shell.node_zonal_deg_per_day, 5),
         round_decimal(shell.node_off_in_5_years_deg, 2)
     );
+    if let Some(perigee) = shell.perigee {
+        let _ = writeln!(
+            text,
+            "rate of the argument of perigee {:+.5} deg/day by J2, {:+.5} with J2² and J4",
+            round_decimal(perigee.j2_deg_per_day, 5),
+            round_decimal(perigee.zonal_deg_per_day, 5)
+        );
+    }
     let _ = writeln!(
         text,
         "the same nodal period with J2² and J4: mean semi-major axis {:+.1} m\n",
@@ -398,6 +421,8 @@ pub fn lifetimes_csv(designs: &[DesignLifetime]) -> io::Result<String> {
         "node_j2_deg_per_day",
         "node_zonal_deg_per_day",
         "node_off_in_5_years_deg",
+        "perigee_j2_deg_per_day",
+        "perigee_zonal_deg_per_day",
         "semi_major_axis_shift_m",
         "deorbit_m_s",
         "phase_deg_per_day",
@@ -424,11 +449,16 @@ pub fn lifetimes_csv(designs: &[DesignLifetime]) -> io::Result<String> {
                 shell.node_j2_deg_per_day,
                 shell.node_zonal_deg_per_day,
                 shell.node_off_in_5_years_deg,
-                shell.semi_major_axis_shift_m,
             ]
             .map(|value| value.to_string()),
         );
-        row.push(optional(shell.deorbit_m_s));
+        let perigee = shell.perigee;
+        row.extend([
+            optional(perigee.map(|of| of.j2_deg_per_day)),
+            optional(perigee.map(|of| of.zonal_deg_per_day)),
+            shell.semi_major_axis_shift_m.to_string(),
+            optional(shell.deorbit_m_s),
+        ]);
         row.extend(
             [
                 injection.phase_deg_per_day,

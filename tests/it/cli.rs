@@ -212,6 +212,10 @@ fn what_cannot_be_run_says_why() {
             refused(&["validate", "--against", "stk"]),
             "unknown name \"stk\" (choices: sgp4,",
         ),
+        (
+            refused(&["validate", "--against", "full-force"]),
+            "no full force model",
+        ),
         (refused(&["frobnicate"]), "unrecognized subcommand"),
     ];
     for (stderr, expected) in cases {

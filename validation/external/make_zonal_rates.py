@@ -12,7 +12,7 @@ import argparse
 
 import brahe as bh
 import numpy as np
-from full_force import exported, integrated
+from full_force_model import epoch, exported, integrated, set_space_weather, set_up
 
 DESIGNS = ("delta:40:1/1/0@925", "delta:55:1/1/0@925", "delta:70:1/1/0@600", "delta:97:1/1/0@500")
 STEP_S = 300.0
@@ -32,18 +32,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--program", default="navwalker")
     program = parser.parse_args().program
-    bh.set_global_eop_provider_from_static_provider(bh.StaticEOPProvider.from_zero())
-    bh.set_global_space_weather_provider(bh.StaticSpaceWeatherProvider.from_values(0.0, 0.0, 65.0, 65.0, 0))
-    epoch = bh.Epoch.from_datetime(2025, 1, 1, 0, 0, 0.0, 0.0, bh.TimeSystem.UTC)
+    set_up()
+    set_space_weather("low")
     times = np.arange(0.0, DAYS * 86400.0 + 1, STEP_S)
-    pole = bh.rotation_eci_to_ecef(epoch + DAYS * 43200.0)[2]
+    pole = bh.rotation_eci_to_ecef(epoch() + DAYS * 43200.0)[2]
     print("design, rate of the node under J2 and under J2 to J4 (deg/day)")
     for design in DESIGNS:
         (states,) = exported(program, design, "j2-osculating", 1, 3600).values()
         rates = []
         for degree in (2, 4):
             gravity = bh.GravityConfiguration.spherical_harmonic(degree, 0, bh.GravityModelType.EGM2008_120)
-            track = integrated(states[0][1], epoch, bh.ForceModelConfig(gravity=gravity), times)
+            track = integrated(states[0][1], bh.ForceModelConfig(gravity=gravity), times)
             rates.append(node_rate_deg_day(times, track, pole))
         print(f"{design}, {rates[0]:.7f}, {rates[1]:.7f}")
 

@@ -22,7 +22,7 @@ use crate::run::ValidateResult;
 use crate::scenario::{Scenario, builtin};
 use crate::validate::file::{Comparand, ReferenceConstellation, against_file, comparands};
 use crate::validate::{Findings, Subject, Target, against_paper};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
@@ -51,6 +51,9 @@ const REPORTS: [(&str, ReportFormat); 5] = [
     ("report.junit.xml", ReportFormat::Junit),
 ];
 
+/// The command that compares a design with integrations under all forces.
+const FULL_FORCE: &str = "`python validation/external/full_force.py --design NOTATION --out DIR` of the source repository";
+
 /// The reports as a page to read and print, with figures.
 const REPORT_PAGE: &str = "report.html";
 
@@ -60,6 +63,11 @@ fn targets(typed: &[String]) -> Result<Vec<Against>> {
         if name.contains(['.', '/', '\\']) {
             return Ok(Against::Files(PathBuf::from(name)));
         }
+        ensure!(
+            name != "full-force",
+            "--against full-force: this program has no full force model; {FULL_FORCE} integrates a design by brahe, \
+             force by force, and writes ephemerides that `--against FOLDER` reads"
+        );
         let target = name.parse().with_context(|| {
             format!("--against {name}: neither a target nor a path (a path contains a '.' or '/')")
         })?;
