@@ -14,6 +14,7 @@ use crate::ephemeris::Ephemeris;
 use crate::ephemeris::sampled::Sampled;
 use crate::formats::WriteError;
 use crate::formats::metadata::Object;
+use crate::formats::text::fixed::FixedDecimals;
 use crate::formats::text::timestamp::{SecondDigits, calendar};
 use crate::frames::{EarthFixed, State};
 use crate::orbit::MeanElements;
@@ -168,8 +169,8 @@ pub fn write_states(out: &mut impl Write, ephemeris: &Ephemeris) -> Result<(), W
 /// Position to 1e-9 km and velocity to 1e-12 km/s.
 fn fields<F>(state: &State<F>) -> impl Iterator<Item = String> {
     let (r, v) = (state.position_km.km(), state.velocity_km_s);
-    let position = [r.x, r.y, r.z].map(|x| format!("{x:.9}"));
-    let velocity = [v.x, v.y, v.z].map(|x| format!("{x:.12}"));
+    let position = [r.x, r.y, r.z].map(|x| FixedDecimals::<9>(x).to_string());
+    let velocity = [v.x, v.y, v.z].map(|x| FixedDecimals::<12>(x).to_string());
     position.into_iter().chain(velocity)
 }
 

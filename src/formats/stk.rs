@@ -18,6 +18,7 @@ use crate::ephemeris::hermite::Hermite;
 use crate::ephemeris::sampled::Sampled;
 use crate::formats::WriteError;
 use crate::formats::metadata::Metadata;
+use crate::formats::text::fixed::FixedDecimals;
 use crate::frames::{Frame, State};
 use crate::time::Epoch;
 use chrono::{Datelike, NaiveDateTime, Timelike};
@@ -277,11 +278,14 @@ fn write_state(out: &mut impl Write, elapsed_s: f64, state: &State<Frame>) -> io
     let (r, v) = (state.position_km.km(), state.velocity_km_s);
     // The nanosecond to which stamps are kept everywhere else.
     let seconds = (elapsed_s * 1e9).round() / 1e9;
-    writeln!(
-        out,
-        "{seconds} {:.9} {:.9} {:.9} {:.12} {:.12} {:.12}",
-        r.x, r.y, r.z, v.x, v.y, v.z
-    )
+    write!(out, "{seconds}")?;
+    for x in [r.x, r.y, r.z] {
+        write!(out, " {}", FixedDecimals::<9>(x))?;
+    }
+    for x in [v.x, v.y, v.z] {
+        write!(out, " {}", FixedDecimals::<12>(x))?;
+    }
+    writeln!(out)
 }
 
 #[cfg(test)]

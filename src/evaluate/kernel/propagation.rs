@@ -14,10 +14,14 @@ use crate::frames::EarthRotation;
 use crate::orbit::Model;
 use crate::orbit::j2::SecularRates;
 use nalgebra::Vector3;
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Satellites that are processed together.
 pub(super) const BLOCK: usize = 64;
+
+/// So many satellites of an instant are propagated by all threads: a block takes some 20 µs by SGP4, a fork of threads a few.
+const CONCURRENT: usize = 8 * BLOCK;
 
 /// Positions of satellites, Earth-fixed, km; NaN in a slot without a satellite.
 #[derive(Debug, Clone)]
@@ -44,6 +48,32 @@ impl PositionBlock {
         y: [f64::NAN; BLOCK],
         z: [f64::NAN; BLOCK],
     };
+
+    /// Positions of the satellites at these places of an ephemeris, all of one block, by their propagators; returns the smallest
+    /// and the largest distance from the centre of the Earth, km.
+    fn propagate(
+        &mut self,
+        ephemeris: &Ephemeris,
+        places: Range<usize>,
+        elapsed_s: f64,
+        rotation: EarthRotation,
+    ) -> Result<[f64; 2], EphemerisError> {
+        let [mut nearest_km, mut farthest_km] = [f64::INFINITY, 0.0_f64];
+        for n in places {
+            let satellite = &ephemeris.satellites()[n];
+            let place = n % BLOCK;
+            let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? else {
+                let nowhere = f64::NAN;
+                (self.x[place], self.y[place], self.z[place]) = (nowhere, nowhere, nowhere);
+                continue;
+            };
+            let position = rotation.to_earth_fixed(state.position_km).km();
+            (self.x[place], self.y[place], self.z[place]) = (position.x, position.y, position.z);
+            let radius_km = position.norm();
+            (nearest_km, farthest_km) = (nearest_km.min(radius_km), farthest_km.max(radius_km));
+        }
+        Ok([nearest_km, farthest_km])
+    }
 }
 
 impl Positions {
@@ -98,6 +128,8 @@ impl Positions {
         self.propagate_some(ephemeris, all, elapsed_s, rotation)
     }
 
+    /// Places outside the range keep their positions. Many satellites are computed by all threads; a distance does not depend
+    /// on the order.
     fn propagate_some(
         &mut self,
         ephemeris: &Ephemeris,
@@ -105,20 +137,30 @@ impl Positions {
         elapsed_s: f64,
         rotation: EarthRotation,
     ) -> Result<(), EphemerisError> {
-        for n in places {
-            let satellite = &ephemeris.satellites()[n];
-            let block = &mut self.blocks[n / BLOCK];
-            let place = n % BLOCK;
-            let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? else {
-                let nowhere = f64::NAN;
-                (block.x[place], block.y[place], block.z[place]) = (nowhere, nowhere, nowhere);
-                continue;
-            };
-            let position = rotation.to_earth_fixed(state.position_km).km();
-            (block.x[place], block.y[place], block.z[place]) = (position.x, position.y, position.z);
-            let radius_km = position.norm();
-            self.widen(radius_km, radius_km);
-        }
+        let first = places.start / BLOCK;
+        let end = places.end.div_ceil(BLOCK);
+        let one = |(n, block): (usize, &mut PositionBlock)| {
+            let from = (first + n) * BLOCK;
+            let inside = places.start.max(from)..places.end.min(from + BLOCK);
+            block.propagate(ephemeris, inside, elapsed_s, rotation)
+        };
+        let blocks = &mut self.blocks[first..end];
+        let widest = |all: [f64; 2], one: Result<[f64; 2], EphemerisError>| {
+            one.map(|one| [all[0].min(one[0]), all[1].max(one[1])])
+        };
+        let none = [f64::INFINITY, 0.0];
+        let [nearest_km, farthest_km] = if places.len() < CONCURRENT {
+            blocks
+                .iter_mut()
+                .enumerate()
+                .map(one)
+                .try_fold(none, widest)
+        } else {
+            // Collected, so that of several errors the first is told.
+            let found: Vec<_> = blocks.par_iter_mut().enumerate().map(one).collect();
+            found.into_iter().try_fold(none, widest)
+        }?;
+        self.widen(nearest_km, farthest_km);
         Ok(())
     }
 }

@@ -21,6 +21,7 @@ use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::ephemeris::hermite::Hermite;
 use crate::formats::ccsds::kvn::{CcsdsHeader, write_comments};
 use crate::formats::metadata::{Metadata, Object};
+use crate::formats::text::fixed::FixedDecimals;
 use crate::formats::text::timestamp::{SecondDigits, TimeSystem, calendar};
 use crate::formats::trajectory::{Trajectory, TrajectoryError, frame_of_name, time_system_of_name};
 use crate::frames::{Frame, State};
@@ -292,19 +293,16 @@ impl SegmentMetadata {
 /// Positions to 1e-9 km and velocities to 1e-12 km/s: below what doubles lose in a day.
 fn write_state(out: &mut impl Write, line: &StateLine, digits: SecondDigits) -> io::Result<()> {
     let (r, v) = (line.state.position_km.km(), line.state.velocity_km_s);
-    write!(
-        out,
-        "{} {:.9} {:.9} {:.9} {:.12} {:.12} {:.12}",
-        calendar(line.epoch, digits),
-        r.x,
-        r.y,
-        r.z,
-        v.x,
-        v.y,
-        v.z
-    )?;
-    if let Some(a) = line.acceleration_km_s2 {
-        write!(out, " {:.12} {:.12} {:.12}", a.x, a.y, a.z)?;
+    out.write_all(calendar(line.epoch, digits).as_bytes())?;
+    for x in [r.x, r.y, r.z] {
+        write!(out, " {}", FixedDecimals::<9>(x))?;
+    }
+    let accelerations = line.acceleration_km_s2.map(|a| [a.x, a.y, a.z]);
+    for x in [v.x, v.y, v.z]
+        .into_iter()
+        .chain(accelerations.into_iter().flatten())
+    {
+        write!(out, " {}", FixedDecimals::<12>(x))?;
     }
     writeln!(out)
 }

@@ -2,7 +2,7 @@
 
 use crate::keyword::keywords;
 use crate::time::{Epoch, TT_MINUS_TAI_S, TimeGrid, ends_with_leap_second};
-use chrono::{NaiveDate, NaiveDateTime, TimeDelta, Timelike};
+use chrono::{Datelike, NaiveDate, NaiveDateTime, TimeDelta, Timelike};
 
 /// TAI - GPS time, s (IS-GPS-200: GPS time was UTC in January 1980, when TAI - UTC was 19 s).
 const TAI_MINUS_GPS_S: f64 = 19.0;
@@ -105,13 +105,19 @@ impl SecondDigits {
 pub fn calendar(stamp: NaiveDateTime, digits: SecondDigits) -> String {
     // chrono writes second 60 as second 59 with 1e9 nanoseconds or more.
     let leap = stamp.nanosecond() / 1_000_000_000;
-    let fraction = format!("{:09}", stamp.nanosecond() % 1_000_000_000);
-    format!(
-        "{}:{:02}.{}",
-        stamp.format("%Y-%m-%dT%H:%M"),
+    // Not by chrono's formatter, which interprets its pattern anew for each of millions of stamps.
+    let mut text = format!(
+        "{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}",
+        stamp.year(),
+        stamp.month(),
+        stamp.day(),
+        stamp.hour(),
+        stamp.minute(),
         stamp.second() + leap,
-        &fraction[..digits.0]
-    )
+        stamp.nanosecond() % 1_000_000_000
+    );
+    text.truncate(text.len() - 9 + digits.0);
+    text
 }
 
 /// Reads CCSDS ASCII time code A or B (CCSDS 502.0-B-3, 7.5.10): calendar day or day of year,

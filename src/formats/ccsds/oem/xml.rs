@@ -12,6 +12,7 @@ use crate::formats::ccsds::xml::{
     XmlLeaf, XmlNode, begin_file, write_comments, write_header, write_leaves,
 };
 use crate::formats::text::finding::FindingList;
+use crate::formats::text::fixed::FixedDecimals;
 use crate::formats::text::lines::keep_comment;
 use crate::formats::text::timestamp::{SecondDigits, calendar};
 use crate::frames::State;
@@ -86,18 +87,16 @@ pub(super) fn write_state(
         "<stateVector><EPOCH>{}</EPOCH>",
         calendar(line.epoch, digits)
     )?;
-    writeln!(
-        out,
-        "<X>{:.9}</X>\n<Y>{:.9}</Y>\n<Z>{:.9}</Z>",
-        r.x, r.y, r.z
-    )?;
-    writeln!(out, "<X_DOT>{:.12}</X_DOT>", v.x)?;
-    writeln!(out, "<Y_DOT>{:.12}</Y_DOT>", v.y)?;
-    writeln!(out, "<Z_DOT>{:.12}</Z_DOT>", v.z)?;
+    for (tag, x) in [("X", r.x), ("Y", r.y), ("Z", r.z)] {
+        writeln!(out, "<{tag}>{}</{tag}>", FixedDecimals::<9>(x))?;
+    }
+    for (tag, x) in [("X_DOT", v.x), ("Y_DOT", v.y), ("Z_DOT", v.z)] {
+        writeln!(out, "<{tag}>{}</{tag}>", FixedDecimals::<12>(x))?;
+    }
     if let Some(a) = line.acceleration_km_s2 {
-        writeln!(out, "<X_DDOT>{:.12}</X_DDOT>", a.x)?;
-        writeln!(out, "<Y_DDOT>{:.12}</Y_DDOT>", a.y)?;
-        writeln!(out, "<Z_DDOT>{:.12}</Z_DDOT>", a.z)?;
+        for (tag, x) in [("X_DDOT", a.x), ("Y_DDOT", a.y), ("Z_DDOT", a.z)] {
+            writeln!(out, "<{tag}>{}</{tag}>", FixedDecimals::<12>(x))?;
+        }
     }
     writeln!(out, "</stateVector>")
 }
