@@ -6,14 +6,12 @@ use crate::cli::progress::Stages;
 use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
 use crate::report::page::{self, FailureSection, Page};
+use crate::run::REPORT_PAGE;
 use anyhow::Result;
 use std::path::{Path, PathBuf};
 
-/// The page in its usual place.
-const PAGE: &str = "report.html";
-
 pub(crate) fn run(args: &ReportArgs) -> Result<Status> {
-    let usual = || args.view.run().unwrap_or_default().join(PAGE);
+    let usual = || args.view.run().unwrap_or_default().join(REPORT_PAGE);
     let out = args.out.clone().unwrap_or_else(usual);
     write(&args.view, &out, args.failures.map(|k| (k, args.draws)))?;
     output::result(&out.display().to_string())?;
@@ -28,7 +26,7 @@ pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<Path
         validation: validation.map(Path::to_owned),
         ..ViewArgs::default()
     };
-    let out = directory.join(PAGE);
+    let out = directory.join(REPORT_PAGE);
     write(&args, &out, None)?;
     Ok(out)
 }
