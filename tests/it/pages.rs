@@ -148,3 +148,29 @@ fn the_page_of_a_sweep_has_the_best_of_its_table() {
     let name = Path::new("report.html");
     assert_eq!(one[name], other[name]);
 }
+
+/// `report` is of runs: the page of a size or a sweep stays, unless another place is given.
+#[test]
+fn the_page_of_another_command_is_not_replaced() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let size = format!("size {SMALL} --set objectives.constraints=[\"planes<=50\"] --out size");
+    assert_eq!(run(place, &size).status, 0);
+    assert_eq!(run(place, &format!("sweep {SMALL} --out sweep")).status, 0);
+    assert_eq!(
+        run(place, "reproduce topex --quiet --out reproduce").status,
+        0
+    );
+    for (out, command) in [
+        ("size", "size"),
+        ("sweep", "sweep"),
+        ("reproduce", "validate or reproduce"),
+    ] {
+        let before = page(place, out);
+        let refused = run(place, &format!("report {out} --quiet"));
+        assert_eq!(refused.status, 2, "{out}: {}", refused.stderr);
+        let message = format!("{out} holds the results and the page of {command};");
+        assert!(refused.stderr.contains(&message), "{}", refused.stderr);
+        assert_eq!(page(place, out), before);
+    }
+}

@@ -8,7 +8,7 @@ use crate::report::page::pack::Packed;
 use serde::Serialize;
 
 /// Most bytes of a page for maps at instants.
-const INSTANTS_BYTES: usize = 450_000;
+const INSTANTS_BYTES: usize = 250_000;
 
 /// Most instants that have maps.
 const MOST_INSTANTS: usize = 97;
