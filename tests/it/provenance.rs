@@ -13,7 +13,7 @@ const SEARCH: &str =
 /// A space of a few designs, and a constraint that some of them keep.
 const SMALLEST: &str = "--set search.planes=[5,5] --set search.satellites-per-plane=[5,6] --set \
                         search.inclination-step-deg=20 --set search.altitude-step-km=600 --set \
-                        objectives.constraints=[\"mean-visible>=6\"]";
+                        objectives.constraints=[\"mean-visible>=0.1\"]";
 
 fn run(place: &Path, line: &str) -> Ran {
     ran(place, &line.split_whitespace().collect::<Vec<_>>())
@@ -266,12 +266,11 @@ fn what_is_drawn_is_compared_by_the_files_beside_it() {
         figures.stderr
     );
     done(place, "diff a/report.html a/report.html");
-    // In directories the tables move, and drawings are told apart from them.
+    // In directories the tables move; a figure beside a table that moved is not named again.
     let both = run(place, "diff a b");
     assert_eq!(both.status, 1);
     assert!(
-        both.stdout
-            .contains("drawn differently: figures/h.svg, report.html"),
+        both.stdout.contains("drawn differently: report.html\n"),
         "{}",
         both.stdout
     );
