@@ -12,6 +12,8 @@ mod diff;
 #[cfg(feature = "figures")]
 mod dominance;
 mod evaluated;
+#[cfg(feature = "figures")]
+mod evidence_page;
 mod expected;
 pub mod failures;
 #[cfg(feature = "figures")]
@@ -27,15 +29,23 @@ pub(crate) mod phases;
 pub mod profile;
 mod relative_nodes;
 mod results;
+pub(crate) mod section;
 mod seeds;
 mod separations;
 pub(crate) mod shown;
+mod size;
+#[cfg(feature = "figures")]
+mod size_page;
 mod skies;
 mod studies;
 mod study_files;
 #[cfg(feature = "figures")]
 mod study_page;
 mod study_sections;
+#[cfg(all(feature = "figures", feature = "sweep"))]
+mod sweep_page;
+#[cfg(all(feature = "figures", feature = "sweep"))]
+mod sweep_summary;
 mod table;
 #[cfg(feature = "validate")]
 pub(crate) mod validation;
@@ -53,6 +63,8 @@ pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult,
 };
+#[cfg(feature = "figures")]
+pub use evidence_page::EvidencePageError;
 pub use expected::{ExpectedService, SpareService};
 pub use from_evaluations::{EvaluatedFront, EvaluationSource, NotEvaluated};
 pub use labels::quantity_label;
@@ -70,16 +82,21 @@ pub use seeds::{JointMember, SeedRun, SeedsResult, Spread};
 pub use separations::{
     ApproachResult, DesignSeparation, SeparationResult, separations_csv, separations_text,
 };
+pub use size::size_text;
+#[cfg(feature = "figures")]
+pub use size_page::write_size_page;
 pub use skies::{SkyClockResult, SkyResult, skies_csv, skies_text};
 pub use studies::{
     StatementRecord, StudiesResult, StudyResult, StudyStamp, statements_csv, studies_markdown,
     studies_text,
 };
 pub use study_files::study_tables;
-#[cfg(feature = "figures")]
-pub use study_page::StudyPageError;
+#[cfg(all(feature = "figures", feature = "sweep"))]
+pub use sweep_page::write_sweep_page;
+#[cfg(all(feature = "figures", feature = "sweep"))]
+pub use sweep_summary::SweepSummary;
 pub use table::{Align, Table};
 #[cfg(feature = "validate")]
 pub use validation::{checks_csv, checks_junit, validation_markdown, validation_text};
 #[cfg(feature = "figures")]
-pub use validation_page::{ValidationPageError, write_validation_page};
+pub use validation_page::write_validation_page;

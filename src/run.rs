@@ -52,6 +52,8 @@ pub const CHECKPOINT: &str = "checkpoint";
 pub const PREVIOUS_CHECKPOINT: &str = "checkpoint.previous";
 /// The record of each generation of the checkpoints, one per line.
 pub const CHECKPOINT_LOG: &str = "checkpoint.log";
+/// The page of a result: the answer, figures and tables in one HTML file.
+pub const REPORT_PAGE: &str = "report.html";
 /// What a run is a run of, and its inputs with their checksums.
 pub const MANIFEST: &str = "run.json";
 /// The directory for copies of the files that the scenario names.

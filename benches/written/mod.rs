@@ -24,6 +24,7 @@ pub(crate) fn subject(design: &str, samples: usize) -> ExportSubject {
         },
         originator: "NAVWALKER".to_owned(),
         creation: epoch,
+        provenance: None,
     }
 }
 

@@ -13,7 +13,7 @@ use crate::run::checkpoint::{self, Identity, RecordLog};
 use crate::run::evaluations::EVALUATIONS_FILES;
 use crate::run::{
     CHECKPOINT, CHECKPOINT_LOG, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
-    PREVIOUS_CHECKPOINT, ResultProvenance, SCENARIO, VALIDATION, result_files,
+    PREVIOUS_CHECKPOINT, REPORT_PAGE, ResultProvenance, SCENARIO, VALIDATION, result_files,
 };
 use crate::scenario::Scenario;
 use anyhow::{Context, Result, bail};
@@ -33,7 +33,7 @@ fn own() -> BTreeSet<String> {
     for directory in [INPUTS, VALIDATION, "figures"] {
         own.insert(format!("{directory}/"));
     }
-    own.extend(["report.html", HOLDER].map(str::to_owned));
+    own.extend([REPORT_PAGE, HOLDER].map(str::to_owned));
     own.extend(EVALUATIONS_FILES.map(str::to_owned));
     own
 }

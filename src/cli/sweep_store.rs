@@ -8,6 +8,7 @@ use crate::cli::study::Study;
 use crate::cli::{files, output};
 use crate::evaluate::Evaluator;
 use crate::keyword::Keyword;
+use crate::report::{SweepSummary, write_sweep_page};
 use crate::run::checkpoint::hex_sha256;
 use crate::run::hashed::Hashed;
 use crate::run::sweep::{
@@ -16,7 +17,7 @@ use crate::run::sweep::{
     TableWriter, chunks_csv, designs_csv, read_chunk, read_chunks, read_designs, write_chunk,
 };
 use crate::run::typed_columns::TypedColumns;
-use crate::run::{INPUTS, MANIFEST, SCENARIO, VERSION};
+use crate::run::{INPUTS, MANIFEST, REPORT_PAGE, SCENARIO, VERSION};
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -57,6 +58,7 @@ fn own() -> BTreeSet<String> {
         CHUNKS_CSV,
         DESIGNS_CSV,
         INDEX_JSON,
+        REPORT_PAGE,
     ];
     let directories = [INPUTS, CHUNKS].map(|name| format!("{name}/"));
     let files = files.into_iter().map(str::to_owned);
@@ -283,7 +285,7 @@ impl SweepStore {
         files::write_atomically(&self.result_path(number), bytes)
     }
 
-    /// Writes the merged table and the index, from results of all chunks; the bytes do not depend on where they were
+    /// Writes the merged table, the index and the page, from results of all chunks; the bytes do not depend on where they were
     /// computed, nor on their size. `Err` of the inner result names the chunks that cannot be used, by number from 0.
     ///
     /// # Errors
@@ -300,6 +302,7 @@ impl SweepStore {
         let cannot = || format!("cannot write {}", place.display());
         let mut indexed = Vec::new();
         let mut without_metrics = 0;
+        let mut summary = SweepSummary::default();
         let first = self.table(0)?;
         let sha256 = files::StagedFile::new(&place)?.commit_written(|file| {
             let mut writer = self.table_writer(file, &first)?;
@@ -307,6 +310,7 @@ impl SweepStore {
                 let found = self.result(number).map_err(io::Error::other)?;
                 let (bytes, table) = found.ok_or(io::ErrorKind::NotFound)?;
                 without_metrics += rows_without_metrics(&table);
+                summary.add(&table);
                 indexed.push(IndexedChunk {
                     name: entry.name.clone(),
                     designs: entry.designs,
@@ -323,6 +327,9 @@ impl SweepStore {
         let index = SweepIndex::new(&self.plan, indexed, without_metrics, sha256);
         let json = crate::printable::json(&index)? + "\n";
         files::write_atomically(&self.path.join(INDEX_JSON), json.as_bytes())?;
+        let mut page = Vec::new();
+        write_sweep_page(&self.plan, &index, &summary, &mut page)?;
+        files::write_atomically(&self.path.join(REPORT_PAGE), &page)?;
         Ok(Ok(index))
     }
 

@@ -74,6 +74,8 @@ pub struct ExportSubject {
     pub originator: String,
     /// The creation date in the files.
     pub creation: Epoch,
+    /// Name of the file beside the manifest that says which build and command made the files, if one is written.
+    pub provenance: Option<String>,
 }
 
 /// Options of the products.

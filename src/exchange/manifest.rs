@@ -26,6 +26,9 @@ pub struct Manifest {
     pub program: String,
     /// Its version.
     pub version: String,
+    /// The file beside it that says which build and command made the files, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub provenance: Option<String>,
     /// The study.
     pub scenario: ExportedStudy,
     /// The design, in Walker's notation; none for satellites from files alone.

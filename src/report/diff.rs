@@ -68,7 +68,10 @@ pub struct Diff {
     pub moved: Vec<Moved>,
     /// Files whose bytes differ and whose values cannot be compared.
     pub differing_files: Vec<String>,
-    /// Files that only A has.
+    /// Pages and figures whose bytes differ. They are drawn from the other files and from the program, so that they say
+    /// nothing of values.
+    pub differing_drawings: Vec<String>,
+    /// Files that only A has, drawings left out.
     pub only_in_a: Vec<String>,
     /// Files that only B has.
     pub only_in_b: Vec<String>,
@@ -80,11 +83,10 @@ impl Diff {
     #[must_use]
     pub fn of(a: &Side, b: &Side, tolerance: Tolerance) -> Self {
         let missing = |from: &Side, of: &Side| -> Vec<String> {
-            let names = from.files.keys();
-            names
-                .filter(|name| !of.files.contains_key(*name))
-                .cloned()
-                .collect()
+            let files = from.files.iter();
+            let own =
+                files.filter(|(name, file)| !file.is_drawing() && !of.files.contains_key(*name));
+            own.map(|(name, _)| name.clone()).collect()
         };
         let mut diff = Self {
             provenance: [a.provenance.clone(), b.provenance.clone()],
@@ -92,6 +94,7 @@ impl Diff {
             compared: BTreeMap::new(),
             moved: Vec::new(),
             differing_files: Vec::new(),
+            differing_drawings: Vec::new(),
             only_in_a: missing(a, b),
             only_in_b: missing(b, a),
         };
@@ -128,7 +131,11 @@ impl Diff {
         let (Some(a_values), Some(b_values)) = (a.values(), b.values()) else {
             let differs = a != b;
             if differs {
-                self.differing_files.push(name.to_owned());
+                let list = match a.is_drawing() {
+                    true => &mut self.differing_drawings,
+                    false => &mut self.differing_files,
+                };
+                list.push(name.to_owned());
             }
             return differs;
         };
@@ -139,11 +146,12 @@ impl Diff {
         for (place, leaf) in &a_values {
             self.value(name, place, Some(leaf), of_b.get(place).copied());
         }
-        for (place, leaf) in b_values.iter().filter(|(place, _)| !of_a.contains(place)) {
+        let only_b = b_values.iter().filter(|(place, _)| !of_a.contains(place));
+        self.compared
+            .insert(name.to_owned(), a_values.len() + only_b.clone().count());
+        for (place, leaf) in only_b {
             self.value(name, place, None, Some(leaf));
         }
-        let more = of_b.len().saturating_sub(of_a.len());
-        self.compared.insert(name.to_owned(), a_values.len() + more);
         self.moved.len() > before
     }
 
@@ -271,8 +279,39 @@ mod tests {
             ["a.csv", "x", "2", "1", "3", "+2", "66.667", "%", "two"]
         );
         assert!(
-            text.ends_with("4 values in 1 file compared, 2 moved\n") || text.contains("6 values"),
+            text.ends_with("6 values in 1 file compared, 2 moved\n"),
             "{text}"
         );
+        // What only one side has is compared, too: here x of one and of two.
+        let diff = moved(
+            &[("a.csv", "name,x\none,1\n")],
+            &[("a.csv", "name,x\ntwo,1\n")],
+            0.0,
+            0.0,
+        );
+        assert_eq!((diff.compared["a.csv"], diff.moved.len()), (4, 4));
+    }
+
+    /// A page is drawn from the other files: it tells of nothing that moved, and is not missed.
+    #[test]
+    fn drawings_are_named_and_move_nothing() {
+        let values = ("front.json", r#"{"x": 1}"#);
+        let a = [
+            values,
+            ("report.html", "<p>1</p>"),
+            ("map.svg", "<svg/>"),
+            ("map.pdf", "1"),
+        ];
+        let b = [
+            values,
+            ("report.html", "<p>2</p>"),
+            ("map.svg", "<svg/>"),
+            ("other.png", "2"),
+        ];
+        let diff = moved(&a, &b, 0.0, 0.0);
+        assert!(diff.is_none(), "{diff:?}");
+        assert_eq!(diff.differing_drawings, ["report.html"]);
+        let text = diff.to_text();
+        assert!(text.contains("drawn differently: report.html\n"), "{text}");
     }
 }

@@ -16,7 +16,10 @@ mod map;
 mod outages;
 mod phases;
 mod residuals;
+mod size;
 mod study;
+#[cfg(feature = "sweep")]
+mod sweep;
 mod table;
 
 pub use super::Baseline;
@@ -35,7 +38,10 @@ pub use map::map;
 pub use outages::timeline;
 pub use phases::{NamedPhases, phases};
 pub(crate) use residuals::residual_figures;
+pub(crate) use size::size_figures;
 pub use study::{NamedChart, deviations_name, study_figures};
+#[cfg(feature = "sweep")]
+pub(in crate::report) use sweep::sweep_figures;
 
 pub(in crate::report) use curves::at_epoch;
 pub(in crate::report) use front::earlier;

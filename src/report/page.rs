@@ -171,8 +171,10 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
         data: safe_json(&payload)?,
         scripts: [
             include_str!("page/core.js"),
+            include_str!("page/maps.js"),
             include_str!("page/figures.js"),
             include_str!("page/globe.js"),
+            include_str!("page/instants.js"),
             include_str!("page/sites.js"),
             include_str!("page/main.js"),
         ]

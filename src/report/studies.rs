@@ -1,6 +1,7 @@
 //! Studies of published numbers: their statements with verdicts, as text, Markdown, CSV and JSON.
 
-use super::study_sections::{StudySectionTable, sections};
+use super::section::ReportSection;
+use super::study_sections::sections;
 use super::{Align, Table};
 use crate::keyword::Keyword;
 use crate::printable::{markdown, printable};
@@ -146,7 +147,7 @@ impl From<&JudgedStatement> for StatementRecord {
 
 impl StatementRecord {
     /// Verdict, statement, published and computed number, unit, source, assumption and the number computed under it.
-    pub(super) fn cells(&self) -> [String; 8] {
+    fn cells(&self) -> [String; 8] {
         let shown = |value: f64| computed(value, self);
         [
             self.verdict.to_string(),
@@ -238,7 +239,7 @@ impl StudyResult {
     }
 
     /// What is shown of it beside its statements.
-    pub(super) fn sections(&self) -> Vec<StudySectionTable> {
+    pub(super) fn sections(&self) -> Vec<ReportSection> {
         sections(self)
     }
 
@@ -273,7 +274,8 @@ impl StudyResult {
 const LEFT: Align = Align::Left;
 const RIGHT: Align = Align::Right;
 
-fn statements_table(study: &StudyResult) -> Table {
+/// The statements of a study with what was computed.
+pub(super) fn statements_table(study: &StudyResult) -> Table {
     let mut columns = vec![
         ("verdict", LEFT),
         ("statement", LEFT),
@@ -366,10 +368,11 @@ pub fn studies_text(result: &StudiesResult) -> String {
         }
         text.push('\n');
         if result.studies.len() == 1 {
-            for StudySectionTable {
+            for ReportSection {
                 title,
                 caption,
                 table,
+                ..
             } in study.sections()
             {
                 let _ = writeln!(text, "{title}. {caption}\n{}", table.to_text());
@@ -415,10 +418,11 @@ pub fn studies_markdown(result: &StudiesResult) -> String {
             let _ = writeln!(text, "- {}", markdown(note));
         }
         if result.studies.len() == 1 {
-            for StudySectionTable {
+            for ReportSection {
                 title,
                 caption,
                 table,
+                ..
             } in study.sections()
             {
                 let (title, caption) = (markdown(&title), markdown(&caption));

@@ -1,5 +1,6 @@
 //! What a study shows beside its statements: tables, fits, assumptions, searches, and other values.
 
+use super::section::ReportSection;
 use super::studies::{StudyResult, round, shown};
 use super::{Align, Table};
 use crate::study::published::{FoundFit, FoundSet, MeasuredRow, MeasuredTable};
@@ -7,15 +8,8 @@ use crate::study::published::{FoundFit, FoundSet, MeasuredRow, MeasuredTable};
 const LEFT: Align = Align::Left;
 const RIGHT: Align = Align::Right;
 
-/// A table of a report with its title and what it is, in a sentence or two.
-pub(super) struct StudySectionTable {
-    pub(super) title: String,
-    pub(super) caption: String,
-    pub(super) table: Table,
-}
-
 /// What is shown of a study beside its statements.
-pub(super) fn sections(study: &StudyResult) -> Vec<StudySectionTable> {
+pub(super) fn sections(study: &StudyResult) -> Vec<ReportSection> {
     let mut sections = Vec::new();
     for table in &study.tables {
         sections.push(rows(table));
@@ -52,7 +46,7 @@ fn change(ours: Option<f64>, published: f64) -> String {
     percent.map_or_else(|| "-".to_owned(), |x| format!("{x:+.2}"))
 }
 
-fn rows(of: &MeasuredTable) -> StudySectionTable {
+fn rows(of: &MeasuredTable) -> ReportSection {
     let printed = of.rows.first().map_or(0, |row| row.published.len());
     let printed = &of.columns[..printed.min(of.columns.len())];
     let mut columns = vec![("row".to_owned(), LEFT), ("as printed".to_owned(), LEFT)];
@@ -79,10 +73,11 @@ fn rows(of: &MeasuredTable) -> StudySectionTable {
              number, where the printed one does not."
         );
     }
-    StudySectionTable {
+    ReportSection {
         title: of.name.clone(),
         caption,
         table,
+        remarks: Vec::new(),
     }
 }
 
@@ -104,7 +99,7 @@ fn row_cells(row: &MeasuredRow) -> Vec<String> {
     cells
 }
 
-fn fit(fit: &FoundFit) -> StudySectionTable {
+fn fit(fit: &FoundFit) -> ReportSection {
     let (vary, to) = (&fit.vary, &fit.to);
     let mut caption = format!("The {vary} at which each row has its {to}.");
     if let Some(median) = fit.median {
@@ -124,14 +119,15 @@ fn fit(fit: &FoundFit) -> StudySectionTable {
             row.value.map_or_else(|| "-".to_owned(), round),
         ]);
     }
-    StudySectionTable {
+    ReportSection {
         title: format!("Fit: {}", fit.name),
         caption,
         table,
+        remarks: Vec::new(),
     }
 }
 
-fn sensitivity(of: &MeasuredTable) -> StudySectionTable {
+fn sensitivity(of: &MeasuredTable) -> ReportSection {
     let printed = of.rows.first().map_or(0, |row| row.published.len());
     let shown: Vec<usize> = (of.shown.iter())
         .filter_map(|name| of.rows.iter().position(|row| row.name == *name))
@@ -158,16 +154,17 @@ fn sensitivity(of: &MeasuredTable) -> StudySectionTable {
         }
         table.row(cells);
     }
-    StudySectionTable {
+    ReportSection {
         title: format!("Sensitivity of {}", of.name),
         caption:
             "One assumption changed at a time, constellations as printed; the file has all rows."
                 .to_owned(),
         table,
+        remarks: Vec::new(),
     }
 }
 
-fn searches(sets: &[FoundSet]) -> StudySectionTable {
+fn searches(sets: &[FoundSet]) -> ReportSection {
     let mut table = Table::new(&[
         ("search", LEFT),
         ("space, objectives and algorithm", LEFT),
@@ -199,15 +196,16 @@ fn searches(sets: &[FoundSet]) -> StudySectionTable {
         }
         table.row(cells);
     }
-    StudySectionTable {
+    ReportSection {
         title: "Searches".to_owned(),
         caption: "With the budget of the scenario; the pick is the fuzzy pick of each set."
             .to_owned(),
         table,
+        remarks: Vec::new(),
     }
 }
 
-fn values(study: &StudyResult) -> StudySectionTable {
+fn values(study: &StudyResult) -> ReportSection {
     let mut table = Table::new(&[
         ("value", LEFT),
         ("of", LEFT),
@@ -222,9 +220,10 @@ fn values(study: &StudyResult) -> StudySectionTable {
             shown(value.unit),
         ]);
     }
-    StudySectionTable {
+    ReportSection {
         title: "Other values".to_owned(),
         caption: "Computed, and not judged.".to_owned(),
         table,
+        remarks: Vec::new(),
     }
 }

@@ -4,7 +4,7 @@ mod appendix;
 
 pub use appendix::validation_markdown;
 #[cfg(feature = "figures")]
-pub(crate) use appendix::{AppendixSection, Headline, headline, sections};
+pub(crate) use appendix::{headline, sections};
 
 use super::{Align, Table};
 use crate::keyword::Keyword;
@@ -66,23 +66,29 @@ fn budget_table(budget: &[BudgetLine]) -> Table {
     table
 }
 
-fn check_table(checks: &[Check]) -> Table {
-    let mut table = Table::new(&[
+/// The checks, with further columns where a report has them.
+fn check_table<const N: usize>(
+    checks: &[Check],
+    further: [(&str, Align); N],
+    cells: impl Fn(&Check) -> [String; N],
+) -> Table {
+    let common = [
         ("", Align::Left),
         ("check", Align::Left),
         ("value", Align::Right),
         ("gate", Align::Right),
         ("unit", Align::Left),
-    ]);
+    ];
+    let mut table = Table::new(&[common.as_slice(), &further].concat());
     for check in checks {
-        let gate = check.gate.map_or_else(String::new, digits);
-        table.row([
+        let common = [
             check.outcome().to_string(),
             check.name.clone(),
             digits(check.value),
-            gate,
+            check.gate.map_or_else(String::new, digits),
             check.unit.clone(),
-        ]);
+        ];
+        table.row(common.into_iter().chain(cells(check)));
     }
     table
 }
@@ -313,7 +319,7 @@ pub fn validation_text(result: &ValidateResult) -> String {
         text += &sweep_table(&result.findings.sweep).to_text();
     }
     text += "\nChecks\n";
-    text += &check_table(&result.findings.checks).to_text();
+    text += &check_table(&result.findings.checks, [], |_| []).to_text();
     for reason in reasons(&result.findings.checks) {
         let _ = writeln!(text, "{reason}");
     }
@@ -508,7 +514,7 @@ mod tests {
             Tally::of(&checks).to_string(),
             "FAILED: 1 of 2 gates; 2 checks have no gate (info)"
         );
-        let table = check_table(&checks).to_text();
+        let table = check_table(&checks, [], |_| []).to_text();
         let verdicts: Vec<&str> = table
             .lines()
             .filter_map(|line| line.split_whitespace().next())

@@ -1,7 +1,7 @@
 //! The inputs of a self-contained run: copies of the files that its scenario names, with checksums.
 
 use super::checkpoint::{Identity, hex_sha256};
-use super::{INPUTS, MANIFEST, SCENARIO};
+use super::{INPUTS, MANIFEST, PROVENANCE, SCENARIO};
 use crate::printable::is_obeyed;
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
@@ -13,6 +13,9 @@ pub struct RunManifest {
     /// The study of the run.
     #[serde(flatten)]
     pub identity: Identity,
+    /// The file beside it that says which build and command made the run; `None` for a run from before there was one.
+    #[serde(default)]
+    pub provenance: Option<String>,
     /// The copies of the scenario's files, in the order of [`Scenario::files`].
     pub inputs: Vec<InputCopy>,
 }
@@ -116,6 +119,7 @@ pub fn first_files(
     };
     let manifest = RunManifest {
         identity: identity.clone(),
+        provenance: Some(PROVENANCE.to_owned()),
         inputs: paths.iter().zip(contents).map(copy).collect(),
     };
     let manifest = crate::printable::json(&manifest)? + "\n";
@@ -162,6 +166,7 @@ mod tests {
                 version: "v".to_owned(),
                 given: Vec::new(),
             },
+            provenance: None,
             inputs: vec![InputCopy {
                 path: "inputs/1/p.csv".to_owned(),
                 sha256: hex_sha256(b"points"),

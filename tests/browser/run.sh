@@ -72,4 +72,10 @@ node hostile.mjs "$work/many" "$work/hostile" "$work/large"
 "$program" report --quiet "$work/hostile" >/dev/null
 "$program" report --quiet "$work/large" >/dev/null
 
+# The pages of a search for the fewest satellites, and of a sweep.
+space=(--quiet --set region.step-deg=25 --set time.step-s=1200 --set search.planes='[5, 7]' --set search.satellites-per-plane='[5, 8]'
+  --set search.inclination-step-deg=5 --set search.altitude-step-km=150)
+"$program" size "${space[@]}" --set 'objectives.constraints=["mean-visible >= 1.5", "mean-pdop <= 1.45"]' --slack 8 --out "$work/size" >/dev/null
+"$program" sweep "${space[@]}" --out "$work/sweep" >/dev/null
+
 node check.mjs "$work" "$shots"

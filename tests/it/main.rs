@@ -22,6 +22,7 @@ mod keys;
 mod limits;
 mod look;
 mod names;
+mod pages;
 mod provenance;
 mod readers;
 mod reference;

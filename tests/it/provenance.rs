@@ -10,6 +10,11 @@ const SMALL: &str = "--set region.step-deg=25 --set time.step-s=1200 --set time.
 const SEARCH: &str =
     "--set optimizer.population=4 --set optimizer.generations=2 --set search.planes=[5,7]";
 
+/// A space of a few designs, and a constraint that some of them keep.
+const SMALLEST: &str = "--set search.planes=[5,5] --set search.satellites-per-plane=[5,6] --set \
+                        search.inclination-step-deg=20 --set search.altitude-step-km=600 --set \
+                        objectives.constraints=[\"mean-visible>=0.1\"]";
+
 fn run(place: &Path, line: &str) -> Ran {
     ran(place, &line.split_whitespace().collect::<Vec<_>>())
 }
@@ -46,6 +51,7 @@ fn every_output_directory_says_where_it_comes_from() {
         (format!("optimize deep/mine.toml {SEARCH} --seeds 2 --out o/seeds --resume"), "o/seeds/seed-2"),
         (format!("evaluate deep/mine.toml {design} --out o/given"), "o/given"),
         (format!("evaluate deep/mine.toml {design} --series o/series"), "o/series"),
+        (format!("size deep/mine.toml {SMALLEST} --out o/size"), "o/size"),
         (format!("export deep/mine.toml {design} --as tle --out o/export"), "o/export"),
         (format!("validate deep/mine.toml {design} --against geographiclib --out o/validation"), "o/validation"),
         ("sweep deep/mine.toml --set search.planes=[5,5] --set search.satellites-per-plane=[5,5] --set \
@@ -66,6 +72,21 @@ fn every_output_directory_says_where_it_comes_from() {
         assert_eq!(found["version"], env!("CARGO_PKG_VERSION"));
         assert!(found["platform"].as_str().unwrap().contains(std::env::consts::ARCH));
         assert_eq!(found["scenarios"][0]["hash"].as_str().unwrap().len(), 64, "{found}");
+    }
+    // Manifests name the file beside them, and runs of all kinds have one.
+    for (out, manifest) in [
+        ("o/run", "run.json"),
+        ("o/seeds/seed-2", "run.json"),
+        ("o/given", "run.json"),
+        ("o/size", "run.json"),
+        ("o/sweep", "run.json"),
+        ("o/export", "manifest.json"),
+    ] {
+        let path = place.join(out);
+        let named = json(&fs::read_to_string(path.join(manifest)).unwrap());
+        let named = named["provenance"].as_str().unwrap();
+        let found = json(&fs::read_to_string(path.join(named)).unwrap());
+        assert_eq!(found["program"], "navwalker", "{out}");
     }
     // What was read back is what the results say.
     let front = fs::read_to_string(place.join("o/run/front.json")).unwrap();
@@ -206,4 +227,61 @@ fn what_cannot_be_compared_is_named() {
         assert_eq!(ran.status, 2, "{line}: {}", ran.stderr);
         assert!(ran.stderr.contains(message), "{line}: {}", ran.stderr);
     }
+}
+
+/// A page and a figure have no values of their own: the error names the file that has them.
+#[test]
+fn what_is_drawn_is_compared_by_the_files_beside_it() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    for (out, mask) in [("a", "7"), ("b", "9")] {
+        let line = format!(
+            "evaluate {SMALL} --set visibility.mask-deg={mask} --design x=delta:55:24/6/1@925 --quiet --out {out}"
+        );
+        done(place, &line);
+        done(place, &format!("report {out} --quiet"));
+        done(
+            place,
+            &format!("plot {out} --figure histogram --quiet --out {out}/figures/h.svg"),
+        );
+    }
+    let pages = run(place, "diff a/report.html b/report.html");
+    assert_eq!(pages.status, 2, "{}", pages.stderr);
+    assert!(
+        pages.stderr.contains("a/report.html is drawn from values"),
+        "{}",
+        pages.stderr
+    );
+    assert!(pages.stderr.contains("front.json"), "{}", pages.stderr);
+    assert!(
+        !pages.stderr.contains("provenance.json"),
+        "{}",
+        pages.stderr
+    );
+    let figures = run(place, "diff a/figures/h.svg b/figures/h.svg");
+    assert_eq!(figures.status, 2);
+    assert!(
+        figures.stderr.contains("in h.csv beside it"),
+        "{}",
+        figures.stderr
+    );
+    done(place, "diff a/report.html a/report.html");
+    // In directories the tables move; a figure beside a table that moved is not named again.
+    let both = run(place, "diff a b");
+    assert_eq!(both.status, 1);
+    assert!(
+        both.stdout.contains("drawn differently: report.html\n"),
+        "{}",
+        both.stdout
+    );
+    assert!(both.stdout.contains("figures/h.csv"), "{}", both.stdout);
+    fs::remove_file(place.join("a/report.html")).unwrap();
+    fs::remove_dir_all(place.join("b")).unwrap();
+    let line = format!(
+        "evaluate {SMALL} --set visibility.mask-deg=7 --design x=delta:55:24/6/1@925 --quiet --out b"
+    );
+    done(place, &line);
+    done(place, "report b --quiet");
+    fs::remove_dir_all(place.join("a/figures")).unwrap();
+    done(place, "diff a b");
 }

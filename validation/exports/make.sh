@@ -37,5 +37,5 @@ kml --as kml --set region.step-deg=20
 gmat --as gmat
 yuma --as yuma
 LIST
-# Which build wrote the samples differs from machine to machine.
+# Which build wrote the samples differs from machine to machine, so what the manifests name is not kept.
 find "$out" -name provenance.json -delete

@@ -76,11 +76,11 @@ pub(crate) struct ReportArgs {
 #[derive(Debug, Args)]
 pub(crate) struct LookArgs {
     /// Width of the figure, mm: 85 for one column of a journal [default: 180].
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(crate) width_mm: Option<f64>,
 
     /// Size of the text, points [default: 8].
-    #[arg(long, value_name = "PT")]
+    #[arg(long, value_name = "PT", allow_negative_numbers = true)]
     pub(crate) font_size: Option<f64>,
 
     /// Title in place of the usual one; none for no title.

@@ -19,6 +19,7 @@ pub(crate) fn run(args: &DiffArgs) -> Result<Status> {
         relative: args.relative,
     };
     let (a, b) = (side(&args.a)?, side(&args.b)?);
+    require_values(args, &a, &b)?;
     if !a.files.keys().any(|name| b.files.contains_key(name)) {
         bail!(
             "{} and {} have no file in common: a run is compared with a run, a report with a report",
@@ -37,6 +38,48 @@ pub(crate) fn run(args: &DiffArgs) -> Result<Status> {
     } else {
         Status::Failed
     })
+}
+
+/// Fails for two pages or figures that differ: their values are in other files, which the error names.
+fn require_values(args: &DiffArgs, a: &Side, b: &Side) -> Result<()> {
+    if args.a.is_dir() || args.b.is_dir() || a.files == b.files {
+        return Ok(());
+    }
+    let drawn = [(&args.a, a), (&args.b, b)]
+        .into_iter()
+        .find(|(_, side)| side.files.values().any(ResultFile::is_drawing));
+    let Some((path, _)) = drawn else {
+        return Ok(());
+    };
+    let beside = values_beside(path);
+    let shown = shown_path(path);
+    bail!(match beside.as_slice() {
+        [] => format!(
+            "{shown} is drawn from values that are in other files; compare the directories of the results"
+        ),
+        files => format!(
+            "{shown} is drawn from values that are in {} beside it; compare those, or the directories",
+            files.join(", ")
+        ),
+    })
+}
+
+/// The files beside a page or a figure that have its values: the table of its name, or else the results.
+fn values_beside(path: &Path) -> Vec<String> {
+    let table = path.with_extension("csv");
+    if table.is_file() {
+        return vec![shown_path(Path::new(table.file_name().unwrap_or_default()))];
+    }
+    let directory = path.parent().filter(|parent| *parent != Path::new(""));
+    let entries = fs::read_dir(directory.unwrap_or(Path::new(".")));
+    let names = entries.into_iter().flatten().flatten();
+    let mut names: Vec<String> = names
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .filter(|name| name.ends_with(".json") && ![MANIFEST, PROVENANCE].contains(&name.as_str()))
+        .map(|name| shown_path(Path::new(&name)))
+        .collect();
+    names.sort();
+    names
 }
 
 /// The name that single files are compared under, since theirs may differ.

@@ -21,6 +21,7 @@ use crate::frames::Frame;
 use crate::keyword::Keyword;
 use crate::report::validation::digits;
 use crate::report::{Align, Table};
+use crate::run::PROVENANCE;
 use crate::time::Epoch;
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
@@ -58,6 +59,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         },
         originator: scenario.export.originator.clone(),
         creation: Epoch::from_utc(scenario.export.creation_date),
+        provenance: Some(PROVENANCE.to_owned()),
     };
     let (products, choices) = (products(args), choices(args));
     limits::check_export(export_size(&subject, &products, &choices))?;

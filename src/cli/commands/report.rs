@@ -6,18 +6,45 @@ use crate::cli::progress::Stages;
 use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
 use crate::report::page::{self, FailureSection, Page};
-use anyhow::Result;
+use crate::run::size::CERTIFICATE_CSV;
+use crate::run::sweep::SWEEP_JSON;
+use crate::run::{REPORT_PAGE, VALIDATION_REPORT};
+use anyhow::{Result, bail};
 use std::path::{Path, PathBuf};
 
-/// The page in its usual place.
-const PAGE: &str = "report.html";
+/// Files that only the results of other commands have beside their page.
+const OTHERS: [(&str, &str); 3] = [
+    (CERTIFICATE_CSV, "size"),
+    (SWEEP_JSON, "sweep"),
+    (VALIDATION_REPORT, "validate or reproduce"),
+];
 
 pub(crate) fn run(args: &ReportArgs) -> Result<Status> {
-    let usual = || args.view.run().unwrap_or_default().join(PAGE);
-    let out = args.out.clone().unwrap_or_else(usual);
+    let out = match &args.out {
+        Some(out) => out.clone(),
+        None => {
+            let directory = args.view.run().unwrap_or_default();
+            refuse_other_page(&directory)?;
+            directory.join(REPORT_PAGE)
+        }
+    };
     write(&args.view, &out, args.failures.map(|k| (k, args.draws)))?;
     output::result(&out.display().to_string())?;
     Ok(Status::Done)
+}
+
+/// Refuses to replace the page that another command wrote with its results.
+fn refuse_other_page(directory: &Path) -> Result<()> {
+    let other = OTHERS
+        .iter()
+        .find(|(file, _)| directory.join(file).exists() && directory.join(REPORT_PAGE).exists());
+    match other {
+        Some((_, command)) => bail!(
+            "{} holds the results and the page of {command}; report is of a run, and --out writes its page elsewhere",
+            output::shown_path(directory)
+        ),
+        None => Ok(()),
+    }
 }
 
 /// Writes the page of a run to its directory, with the validation given by `validation` or the one
@@ -28,7 +55,7 @@ pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<Path
         validation: validation.map(Path::to_owned),
         ..ViewArgs::default()
     };
-    let out = directory.join(PAGE);
+    let out = directory.join(REPORT_PAGE);
     write(&args, &out, None)?;
     Ok(out)
 }

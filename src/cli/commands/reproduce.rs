@@ -13,7 +13,7 @@ use crate::report::{
     studies_text, study_tables,
 };
 use crate::run::checkpoint::hex_sha256;
-use crate::run::{SCENARIO, ScenarioStamp, VERSION};
+use crate::run::{REPORT_PAGE, SCENARIO, ScenarioStamp, VERSION};
 use crate::scenario::Scenario;
 use crate::study::published::{JudgedStudy, PublishedStudy, builtin_studies, builtin_study};
 use anyhow::{Context, Result, bail};
@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 /// The report that identifies the studies in a directory.
 const REPORT: &str = "report.json";
 /// The files beside the tables and figures.
-const OTHERS: [&str; 5] = [SCENARIO, REPORT, "report.md", "report.html", STATEMENTS];
+const OTHERS: [&str; 5] = [SCENARIO, REPORT, "report.md", REPORT_PAGE, STATEMENTS];
 /// All statements.
 const STATEMENTS: &str = "statements.csv";
 /// The forms of a figure.

@@ -2,7 +2,6 @@
 
 mod directory;
 mod robust;
-mod text;
 mod verify;
 
 use crate::cli::args::{OutputFormat, SizeArgs, quoted};
@@ -11,6 +10,7 @@ use crate::cli::progress::SizeBar;
 use crate::cli::study::Study;
 use crate::cli::{Status, coincidence, limits, output};
 use crate::evaluate::Evaluator;
+use crate::report::size_text;
 use crate::run::size::{Refinement, SizeResult, refinements, size_csv};
 use crate::scenario::Scenario;
 use crate::search::size::{ClosestDesign, SizeProblem, SizeSearch};
@@ -75,7 +75,7 @@ pub(crate) fn run(args: &SizeArgs) -> Result<Status> {
     result.robustness = robust::rows(&study, problem.problem().evaluator().setup(), &designs)?;
     directory.finish(&result)?;
     output::result(&match args.format {
-        OutputFormat::Text => text::of(&result),
+        OutputFormat::Text => size_text(&result),
         OutputFormat::Json => crate::printable::json(&result)?,
         OutputFormat::Csv => size_csv(&result)?,
     })?;

@@ -18,7 +18,7 @@ use crate::printable::printable;
 use crate::report::{
     checks_csv, checks_junit, validation_markdown, validation_text, write_validation_page,
 };
-use crate::run::ValidateResult;
+use crate::run::{REPORT_PAGE, ValidateResult};
 use crate::scenario::{Scenario, builtin};
 use crate::validate::file::{Comparand, ReferenceConstellation, against_file, comparands};
 use crate::validate::{Findings, Subject, Target, against_paper};
@@ -53,9 +53,6 @@ const REPORTS: [(&str, ReportFormat); 5] = [
 
 /// The command that compares a design with integrations under all forces.
 const FULL_FORCE: &str = "`python validation/external/full_force.py --design NOTATION --out DIR` of the source repository";
-
-/// The reports as a page to read and print, with figures.
-const REPORT_PAGE: &str = "report.html";
 
 /// The targets on the command line; one with a dot or a slash is a file or a directory.
 fn targets(typed: &[String]) -> Result<Vec<Against>> {

@@ -1,6 +1,6 @@
 //! Protection of inputs and foreign files: what may be written, and what `--force` may replace.
 
-use crate::run::{MANIFEST, PROVENANCE};
+use crate::run::{MANIFEST, PROVENANCE, REPORT_PAGE};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// The entries that this program may write to a run directory used as input.
-const OWN_PLACES: [&str; 4] = ["report.html", "validation", "checkpoints", "figures"];
+const OWN_PLACES: [&str; 4] = [REPORT_PAGE, "validation", "checkpoints", "figures"];
 /// Maximum number of foreign files to name.
 const MOST_NAMED: usize = 5;
 

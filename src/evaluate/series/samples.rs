@@ -43,6 +43,24 @@ impl Evaluator {
         self.visit(ephemeris, |instant| samples.add(instant))?;
         Ok(samples)
     }
+
+    /// The same at some instants alone, by their numbers in the grid.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn samples_at(
+        &self,
+        ephemeris: &Ephemeris,
+        is_kept: impl Fn(usize) -> bool,
+    ) -> Result<SampleGrid, EphemerisError> {
+        let mut samples = SampleGrid::with_capacity(0);
+        self.visit(ephemeris, |instant| {
+            if is_kept(instant.number) {
+                samples.add(instant);
+            }
+        })?;
+        Ok(samples)
+    }
 }
 
 #[cfg(test)]
@@ -68,6 +86,18 @@ mod tests {
         let series = evaluator.series(&ephemeris).unwrap();
         let points = setup.sites.len();
         assert_eq!(samples.visible.len(), setup.sample_count());
+        let some = evaluator
+            .samples_at(&ephemeris, |number| number % 5 == 0)
+            .unwrap();
+        assert_eq!(some.pdop.len(), points * setup.grid.len().div_ceil(5));
+        assert_eq!(
+            some.pdop[points..2 * points],
+            samples.pdop[5 * points..6 * points]
+        );
+        assert_eq!(
+            some.visible[points..2 * points],
+            samples.visible[5 * points..6 * points]
+        );
         for (number, point) in series.points.iter().enumerate() {
             let own = samples.pdop.iter().skip(number).step_by(points);
             let solved: Vec<f64> = own.flatten().map(|pdop| f64::from(*pdop)).collect();

@@ -247,12 +247,14 @@ impl<'a> ExportSource<'a> {
             grid,
             study,
             constellation,
+            provenance,
             ..
         } = self.subject;
         let is_design = constellation.only_design().is_some();
         Manifest {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            provenance: provenance.clone(),
             scenario: study.clone(),
             design: constellation.design.as_ref().map(Design::to_string),
             constellation: (!is_design).then(|| constellation.name.clone()),

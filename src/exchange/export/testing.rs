@@ -39,6 +39,7 @@ pub(crate) fn subject_of(constellation: Constellation, grid: TimeGrid) -> Export
         },
         originator: "NAVWALKER".to_owned(),
         creation: grid.epoch(),
+        provenance: None,
     }
 }
 

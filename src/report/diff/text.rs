@@ -32,6 +32,7 @@ impl Diff {
             ("only in A", &self.only_in_a),
             ("only in B", &self.only_in_b),
             ("different bytes", &self.differing_files),
+            ("drawn differently", &self.differing_drawings),
         ];
         for (what, files) in lists.into_iter().filter(|(_, files)| !files.is_empty()) {
             let _ = writeln!(text, "{what}: {}", files.join(", "));

@@ -27,9 +27,14 @@ pub enum ResultFile {
     Tree(Value),
     /// A table: its columns, and its rows.
     Table(Vec<String>, Vec<Vec<String>>),
+    /// A page or a figure, which is drawn from other files.
+    Drawing(Vec<u8>),
     /// Anything else, by its bytes.
     Other(Vec<u8>),
 }
+
+/// The ends of the names of pages and figures.
+const DRAWINGS: [&str; 5] = ["html", "htm", "svg", "pdf", "png"];
 
 /// Why a file cannot be read as what its name says.
 #[derive(Debug, Error)]
@@ -58,6 +63,7 @@ impl ResultFile {
             Some("json") => Self::Tree(serde_json::from_slice(&bytes)?),
             Some("toml") => Self::Tree(toml::from_str(std::str::from_utf8(&bytes)?)?),
             Some("csv") => Self::table(std::str::from_utf8(&bytes)?)?,
+            Some(end) if DRAWINGS.contains(&end) => Self::Drawing(bytes),
             _ => Self::Other(bytes),
         })
     }
@@ -85,9 +91,15 @@ impl ResultFile {
         match self {
             Self::Tree(tree) => add(tree, &ValuePlace::default(), &mut values),
             Self::Table(columns, rows) => add_rows(columns, rows, &mut values),
-            Self::Other(_) => return None,
+            Self::Drawing(_) | Self::Other(_) => return None,
         }
         Some(values)
+    }
+
+    /// Whether it is a page or a figure.
+    #[must_use]
+    pub fn is_drawing(&self) -> bool {
+        matches!(self, Self::Drawing(_))
     }
 }
 

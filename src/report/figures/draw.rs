@@ -104,21 +104,26 @@ fn register_typeface() {
     });
 }
 
+/// The typeface as a rule of a style sheet.
+pub(in crate::report) fn typeface_rule() -> String {
+    format!(
+        "@font-face{{font-family:Arimo;src:url(data:font/woff2;base64,{})}}",
+        STANDARD.encode(TYPEFACE_WOFF2)
+    )
+}
+
 /// Writes a chart as SVG, with its typeface.
 ///
 /// # Errors
 /// If it cannot be drawn or written.
 pub fn svg(chart: &Chart, sheet: Sheet, mut to: impl Write) -> Result<(), DrawError> {
-    let face = format!(
-        "\n<style>@font-face{{font-family:Arimo;src:url(data:font/woff2;base64,{})}}</style>",
-        STANDARD.encode(TYPEFACE_WOFF2)
-    );
+    let face = format!("\n<style>{}</style>", typeface_rule());
     let text = text(chart, sheet)?;
     let (open, rest) = text.split_at(text.find('>').map_or(0, |at| at + 1));
     Ok(write!(to, "{open}{face}{rest}")?)
 }
 
-/// Writes a chart as SVG for a page, which has the typeface or one of equal widths.
+/// Writes a chart as SVG for a page, which has the typeface once for all its figures.
 ///
 /// # Errors
 /// If it cannot be drawn or written.

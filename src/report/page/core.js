@@ -39,6 +39,8 @@ const Core = (() => {
         tail: cuts.tail,
         tailShown: cuts.tail_shown,
         orbits: cuts.orbits.map((orbit) => ({ ...orbit, meanAnomalyDeg: unpack(orbit.mean_anomaly_deg) })),
+        instants: cuts.instants && { visible: unpack(cuts.instants.visible).map((value) => Math.round(value)),
+          pdop: unpack(cuts.instants.pdop) },
         tracks: cuts.tracks && { ...cuts.tracks, positionsKm: unpack(cuts.tracks.positions_km) },
       });
     }
@@ -162,6 +164,11 @@ const Core = (() => {
     }
   }
 
+  /** Redraws some figures, those of them that are drawn. */
+  function redraw(...ids) {
+    for (const figure of ids.map((id) => figures.get(id))) if (figure.drawn) draw(figure);
+  }
+
   listeners.push(() => refresh(true));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => refresh(false));
   // Print uses the light colours, and draws figures that have not been scrolled to.
@@ -193,5 +200,5 @@ const Core = (() => {
   }
 
   return { data, state, count, total, listeners, withCuts, select, cutsOf, notationOf, nameOf, mark, unpack, plain, digits, theme, figure,
-    refresh, layout };
+    refresh, redraw, layout };
 })();

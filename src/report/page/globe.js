@@ -350,6 +350,8 @@ const Globe = (() => {
   const epoch = Date.parse(world.epoch);
   // Dates in a browser have no leap seconds: the clock stands still during one.
   const ofBrowser = (elapsed) => elapsed - world.leap_seconds_s.filter((start) => start <= elapsed).length;
+  /** An instant so many seconds after the epoch, to the minute. */
+  const utc = (elapsed) => new Date(epoch + 1000 * ofBrowser(elapsed)).toISOString().slice(0, 16).replace("T", " ") + " UTC";
 
   function tell(seen, elapsed) {
     const latitude = place.latitude / RAD, longitude = place.longitude / RAD;
@@ -357,7 +359,7 @@ const Globe = (() => {
     const text = "Sky at " + (place.name ? place.name + ", " : "") + side(latitude, "N", "S") + ", " + side(longitude, "E", "W") + ": "
       + seen.filter((s) => s.visible).length + " LEO satellites above the mask of " + world.mask_deg + "°" + beyond();
     if (caption.textContent !== text) caption.textContent = text;
-    const now = new Date(epoch + 1000 * ofBrowser(elapsed)).toISOString().slice(0, 16).replace("T", " ") + " UTC";
+    const now = utc(elapsed);
     if (clock.textContent !== now) clock.textContent = now;
   }
 
@@ -487,5 +489,5 @@ const Globe = (() => {
     sky.scrollIntoView({ block: "nearest" });
   }
 
-  return { frames: () => [...frames], sky: () => drawn, look };
+  return { frames: () => [...frames], sky: () => drawn, look, utc };
 })();

@@ -1,5 +1,6 @@
 //! The numbers embedded in the page for its figures.
 
+mod instants;
 mod outages;
 mod readouts;
 mod setting;
@@ -18,11 +19,13 @@ use crate::report::profile::{Profile, Quantile, drawn_levels, quantiles_of};
 use crate::report::{Compared, shown};
 use crate::run::{FrontMember, Run};
 use crate::scenario::{Keyword, Quantity};
+use instants::InstantMaps;
 use outages::OutageRow;
 use serde::Serialize;
 use setting::{RegionData, World};
 use std::collections::BTreeMap;
 use tracks::Tracks;
+use variables::VariableColumn;
 
 /// Maximum number of instants of a series in the page; longer series are reduced to intervals.
 const MOST_EPOCHS: usize = 1440;
@@ -71,6 +74,8 @@ pub(super) struct Payload {
     levels: Vec<f64>,
     /// By position in the front.
     cuts: BTreeMap<usize, Cuts>,
+    /// The instants that have maps, seconds from the epoch.
+    instants_s: Vec<f64>,
     region: Option<RegionData>,
     world: Option<World>,
     budget: Vec<Budget>,
@@ -94,7 +99,7 @@ struct Front {
     /// The values shown for the selected design, with the digits of the table.
     tiles: Vec<(String, Vec<String>)>,
     memberships_shown: Vec<String>,
-    variables: Vec<(String, Vec<Option<f64>>)>,
+    variables: Vec<VariableColumn>,
     /// Satellites of each shell of the search, by its letter; none if one shell is the whole design.
     shells: Vec<(String, Vec<usize>)>,
 }
@@ -149,6 +154,8 @@ struct Cuts {
     orbits: Vec<Orbit>,
     /// The satellites that are in no shell.
     tracks: Option<Tracks>,
+    /// Of the constellations that a reader looks at first.
+    instants: Option<InstantMaps>,
 }
 
 /// Data for the globe, of one shell: mean elements at the epoch and their rates.
@@ -201,7 +208,7 @@ impl Payload {
             Some((n, cuts))
         });
         let generations = earlier(run, &names).into_iter();
-        Self {
+        let payload = Self {
             objectives: names.iter().map(|name| Objective::new(name)).collect(),
             front: Front::new(run, &names),
             chosen: run.chosen(),
@@ -224,12 +231,14 @@ impl Payload {
             reference: run.reference().map(|reference| shown::point(&reference)),
             levels: drawn_levels().into_iter().map(short).collect(),
             cuts: of_members.collect(),
+            instants_s: Vec::new(),
             region: setup.and_then(RegionData::new),
             world: setup
                 .zip(run.scenario.as_ref())
                 .map(|(setup, scenario)| World::new(setup, scenario)),
             budget: budget(run),
-        }
+        };
+        payload.with_instants(page)
     }
 }
 
@@ -339,7 +348,7 @@ impl Front {
                 .iter()
                 .map(|m| shown::membership(m.membership))
                 .collect(),
-            variables: variables::all(members),
+            variables: variables::all(members, run.scenario.as_ref()),
             shells: variables::satellites_by_shell(members),
         }
     }
@@ -395,6 +404,7 @@ impl Cuts {
                 .map(|tail| [tail.value_at_risk, tail.cvar].map(|x| shown::pdop(Some(x)))),
             orbits: Vec::new(),
             tracks: None,
+            instants: None,
         }
     }
 

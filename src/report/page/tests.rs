@@ -1,4 +1,5 @@
 mod constellations;
+mod instants;
 
 use super::*;
 use crate::ephemeris::Ephemeris;

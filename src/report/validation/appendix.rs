@@ -1,38 +1,15 @@
 //! A validation as the appendix of a paper: for each check its gate, the reason, and the planted errors that fail it.
 
 use super::{
-    budget_table, comparison_lines, conventions, digits, distribution_table, distributions,
-    satellite_table, sweep_table, verdict,
+    budget_table, check_table, comparison_lines, conventions, digits, distribution_table,
+    distributions, satellite_table, sweep_table, verdict,
 };
 use crate::printable::markdown;
+use crate::report::section::{Headline, ReportSection};
 use crate::report::{Align, Table};
 use crate::run::ValidateResult;
 use crate::validate::{Check, caught_by};
 use std::fmt::Write;
-
-/// What stands before the sections.
-pub(crate) struct Headline {
-    /// What was validated, by what.
-    pub(crate) title: String,
-    /// Scenario, model, version, conventions.
-    pub(crate) lines: Vec<String>,
-    /// How many gates are met.
-    pub(crate) verdict: String,
-    /// Notes on the whole.
-    pub(crate) notes: Vec<String>,
-}
-
-/// A part of the appendix.
-pub(crate) struct AppendixSection {
-    /// Its heading.
-    pub(crate) title: String,
-    /// What the table shows.
-    pub(crate) caption: &'static str,
-    /// The numbers.
-    pub(crate) table: Table,
-    /// Remarks below it.
-    pub(crate) remarks: Vec<String>,
-}
 
 /// What is validated.
 pub(crate) fn headline(result: &ValidateResult) -> Headline {
@@ -51,44 +28,46 @@ pub(crate) fn headline(result: &ValidateResult) -> Headline {
 }
 
 /// The parts that a result has.
-pub(crate) fn sections(result: &ValidateResult) -> Vec<AppendixSection> {
+pub(crate) fn sections(result: &ValidateResult) -> Vec<ReportSection> {
     let findings = &result.findings;
     let mut sections = Vec::new();
     if !findings.budget.is_empty() {
-        sections.push(AppendixSection {
+        sections.push(ReportSection {
             title: "Error budget".to_owned(),
-            caption: "Second minus first, in the radial, in-track and cross-track axes of the first.",
+            caption:
+                "Second minus first, in the radial, in-track and cross-track axes of the first."
+                    .to_owned(),
             table: budget_table(&findings.budget),
             remarks: budget_remarks(result),
         });
     }
     if !findings.sweep.is_empty() {
-        sections.push(AppendixSection {
+        sections.push(ReportSection {
             title: "Over inclination and altitude".to_owned(),
-            caption: "Circular patterns of 12 satellites; cases as in the budget. The last column is the largest fraction of a gate.",
+            caption: "Circular patterns of 12 satellites; cases as in the budget. The last column is the largest fraction of a gate.".to_owned(),
             table: sweep_table(&findings.sweep),
             remarks: Vec::new(),
         });
     }
-    sections.push(AppendixSection {
+    sections.push(ReportSection {
         title: "Checks".to_owned(),
         caption: "A check without a gate is reported for information (info) and counts neither as passed nor as failed. \
-                  The last column names errors that were planted in the library to see the gate fail.",
-        table: check_table(&findings.checks),
+                  The last column names errors that were planted in the library to see the gate fail.".to_owned(),
+        table: explained_checks(&findings.checks),
         remarks: Vec::new(),
     });
     let residuals = distributions(result);
     if !residuals.is_empty() {
-        sections.push(AppendixSection {
+        sections.push(ReportSection {
             title: "Residuals".to_owned(),
-            caption: "Magnitudes, and the input that gives the largest.",
+            caption: "Magnitudes, and the input that gives the largest.".to_owned(),
             table: distribution_table(&residuals),
             remarks: Vec::new(),
         });
     }
-    sections.extend(findings.files.iter().map(|comparison| AppendixSection {
+    sections.extend(findings.files.iter().map(|comparison| ReportSection {
         title: format!("File {}", comparison.source),
-        caption: "The satellites that differ most.",
+        caption: "The satellites that differ most.".to_owned(),
         table: satellite_table(comparison),
         remarks: comparison_lines(comparison),
     }));
@@ -113,32 +92,15 @@ fn budget_remarks(result: &ValidateResult) -> Vec<String> {
 }
 
 /// The checks with what a reviewer asks of each.
-fn check_table(checks: &[Check]) -> Table {
-    let mut table = Table::new(&[
-        ("", Align::Left),
-        ("check", Align::Left),
-        ("value", Align::Right),
-        ("gate", Align::Right),
-        ("unit", Align::Left),
-        ("reason", Align::Left),
-        ("fails under", Align::Left),
-    ]);
-    for check in checks {
+fn explained_checks(checks: &[Check]) -> Table {
+    let further = [("reason", Align::Left), ("fails under", Align::Left)];
+    check_table(checks, further, |check| {
         let errors: Vec<&str> = match check.gate {
             Some(_) => caught_by(&check.name).collect(),
             None => Vec::new(),
         };
-        table.row([
-            check.outcome().to_string(),
-            check.name.clone(),
-            digits(check.value),
-            check.gate.map_or_else(String::new, digits),
-            check.unit.clone(),
-            check.reason.clone(),
-            errors.join("; "),
-        ]);
-    }
-    table
+        [check.reason.clone(), errors.join("; ")]
+    })
 }
 
 /// The validation in Markdown.

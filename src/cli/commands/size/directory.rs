@@ -3,12 +3,13 @@
 use crate::cli::provenance::provenance;
 use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
-use crate::run::INPUTS;
+use crate::report::write_size_page;
 use crate::run::checkpoint::{Identity, hex_sha256};
 use crate::run::size::{
     CERTIFICATE_CSV, SIZE_CHECKPOINT, SIZE_CSV, SIZE_JSON, SizeCertificate, SizeResult,
     certificate_heading, certificate_rows, size_csv,
 };
+use crate::run::{INPUTS, REPORT_PAGE};
 use crate::search::size::{SizeSearch, Witness};
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
@@ -41,7 +42,13 @@ pub(super) struct SizeDirectory {
 
 /// What this program writes in such a directory, and in that of another search.
 fn own() -> BTreeSet<String> {
-    let files = [SIZE_JSON, SIZE_CSV, SIZE_CHECKPOINT, CERTIFICATE_CSV];
+    let files = [
+        SIZE_JSON,
+        SIZE_CSV,
+        SIZE_CHECKPOINT,
+        CERTIFICATE_CSV,
+        REPORT_PAGE,
+    ];
     let files = files.into_iter().chain(crate::run::FILES);
     let inputs = format!("{INPUTS}/");
     files
@@ -173,7 +180,10 @@ impl SizeDirectory {
     pub(super) fn finish(&self, result: &SizeResult) -> Result<()> {
         let json = crate::printable::json(result)? + "\n";
         files::write_atomically(&self.path.join(SIZE_JSON), json.as_bytes())?;
-        files::write_atomically(&self.path.join(SIZE_CSV), size_csv(result)?.as_bytes())
+        files::write_atomically(&self.path.join(SIZE_CSV), size_csv(result)?.as_bytes())?;
+        let mut page = Vec::new();
+        write_size_page(result, &mut page)?;
+        files::write_atomically(&self.path.join(REPORT_PAGE), &page)
     }
 }
 

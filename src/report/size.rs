@@ -1,8 +1,9 @@
-//! The result as text.
+//! The result of a search for the fewest satellites, as text and as the sections of a page.
 
 mod refinement;
 
-use crate::report::{Align, Table, shown};
+use super::section::ReportSection;
+use super::{Align, Table, shown};
 use crate::run::size::{
     BestReached, KeptConstraint, LevelAbove, RejectedLevel, RobustnessRow, SizeFront, SizeResult,
     SizedDesign, basis_word,
@@ -10,6 +11,7 @@ use crate::run::size::{
 use crate::search::Constraint;
 use crate::search::size::{RejectionBasis, Witness};
 use crate::units::counted;
+use std::fmt::Write;
 
 /// Designs that are shown.
 const DESIGNS: usize = 20;
@@ -17,30 +19,35 @@ const DESIGNS: usize = 20;
 /// Numbers of satellites below the fewest that are shown.
 const LEVELS: usize = 10;
 
-pub(super) fn of(result: &SizeResult) -> String {
-    let mut text = head(result);
-    if !result.designs.is_empty() {
-        text += &format!("\n{}", designs(&result.designs));
-        text += "ranked by the least margin, relative to its bound (absolute for bounds below 1), then by fewer planes\n";
+/// The result for a terminal.
+#[must_use]
+pub fn size_text(result: &SizeResult) -> String {
+    let mut text = answer(result) + "\n";
+    for constraint in constraints(result) {
+        let _ = writeln!(text, "  {constraint}");
     }
-    for level in result.above.iter().take(1) {
-        text += &above(level);
+    let _ = writeln!(text, "{}", scope(result));
+    for section in sections(result) {
+        text.push('\n');
+        if !section.caption.is_empty() {
+            let _ = writeln!(text, "{}", section.caption);
+        }
+        if section.table.headings().next().is_some() {
+            text += &section.table.to_text();
+        }
+        for remark in section.remarks {
+            let _ = writeln!(text, "{remark}");
+        }
     }
-    if let Some(front) = &result.front {
-        text += &front_text(front);
-    }
-    text += &reached(&result.best_reached);
-    text += &refinement::text(result);
-    text += &robustness(&result.robustness);
-    text += &below(&result.rejected);
-    text + &cost(result)
+    text
 }
 
-fn head(result: &SizeResult) -> String {
-    let found = match result.fewest {
+/// What was found.
+pub(super) fn answer(result: &SizeResult) -> String {
+    let scenario = &result.scenario.name;
+    match result.fewest {
         Some(fewest) => format!(
-            "Fewest satellites of scenario {}: {fewest}, with {} that {} the constraints\n",
-            result.scenario.name,
+            "Fewest satellites of scenario {scenario}: {fewest}, with {} that {} the constraints",
             counted(result.designs.len(), "design"),
             if result.designs.len() == 1 {
                 "keeps"
@@ -48,26 +55,53 @@ fn head(result: &SizeResult) -> String {
                 "keep"
             },
         ),
-        None => format!(
-            "No design of scenario {} keeps the constraints\n",
-            result.scenario.name
+        None => format!("No design of scenario {scenario} keeps the constraints"),
+    }
+}
+
+/// The constraints, with what they depend on.
+pub(super) fn constraints(result: &SizeResult) -> Vec<String> {
+    let told = |constraint: &String| match constraint.parse::<Constraint>() {
+        Ok(one) if is_about_availability(&one) => format!(
+            "{constraint}, available up to a PDOP of {}",
+            result.availability_pdop
         ),
+        _ => constraint.clone(),
     };
-    let constraint = |constraint: &String| {
-        let note = match constraint.parse::<Constraint>() {
-            Ok(one) if is_about_availability(&one) => {
-                format!(", available up to a PDOP of {}", result.availability_pdop)
-            }
-            _ => String::new(),
-        };
-        format!("  {constraint}{note}\n")
-    };
-    let constraints: String = result.constraints.iter().map(constraint).collect();
+    result.constraints.iter().map(told).collect()
+}
+
+/// What the answer is exact for.
+pub(super) fn scope(result: &SizeResult) -> String {
     format!(
-        "{found}{constraints}exact for the {} samples of the scenario and the grid of its search steps: {} tried\n",
+        "exact for the {} samples of the scenario and the grid of its search steps: {} tried",
         result.samples,
         designs_of(result.designs_tried)
     )
+}
+
+/// The parts that a result has.
+pub(super) fn sections(result: &SizeResult) -> Vec<ReportSection> {
+    let mut sections = Vec::new();
+    if !result.designs.is_empty() {
+        sections.push(designs(result));
+    }
+    sections.extend(result.front.as_ref().map(front));
+    sections.extend(reached(&result.best_reached));
+    sections.extend(refinement::section_of(result));
+    sections.extend(robustness(&result.robustness));
+    sections.push(below(&result.rejected));
+    sections.push(cost(result));
+    sections
+}
+
+fn section(title: &str, caption: impl Into<String>, table: Table) -> ReportSection {
+    ReportSection {
+        title: title.to_owned(),
+        caption: caption.into(),
+        table,
+        remarks: Vec::new(),
+    }
 }
 
 fn is_about_availability(constraint: &Constraint) -> bool {
@@ -79,8 +113,26 @@ fn designs_of(count: u64) -> String {
     counted(usize::try_from(count).unwrap_or(usize::MAX), "design")
 }
 
+/// The designs with the fewest satellites, and the next number of satellites.
+fn designs(result: &SizeResult) -> ReportSection {
+    let all = &result.designs;
+    let mut remarks = Vec::new();
+    if let Some(more @ 1..) = all.len().checked_sub(DESIGNS) {
+        remarks.push(format!("and {more} more in size.csv"));
+    }
+    remarks.push(
+        "ranked by the least margin, relative to its bound (absolute for bounds below 1), then by fewer planes"
+            .to_owned(),
+    );
+    remarks.extend(result.above.first().map(above));
+    ReportSection {
+        remarks,
+        ..section("Designs", "", designs_table(all))
+    }
+}
+
 /// The designs with the value of each constrained quantity.
-fn designs(all: &[SizedDesign]) -> String {
+fn designs_table(all: &[SizedDesign]) -> Table {
     let right = Align::Right;
     let mut columns = vec![
         ("#", right),
@@ -113,11 +165,7 @@ fn designs(all: &[SizedDesign]) -> String {
         row.push(shown::pdop(one.metrics.max_pdop));
         table.row(row);
     }
-    let more = match all.len().saturating_sub(DESIGNS) {
-        0 => String::new(),
-        more => format!("and {more} more in size.csv\n"),
-    };
-    table.to_text() + &more
+    table
 }
 
 /// The value of a constrained quantity.
@@ -141,14 +189,14 @@ fn above(level: &LevelAbove) -> String {
         None => String::new(),
     };
     format!(
-        "with {} satellites, the next number that occurs, {} of {} keep them{best}\n",
+        "with {} satellites, the next number that occurs, {} of {} keep them{best}",
         level.satellites,
         level.kept,
         designs_of(level.designs)
     )
 }
 
-fn front_text(front: &SizeFront) -> String {
+fn front(front: &SizeFront) -> ReportSection {
     let objective = front.objective.as_str();
     let right = Align::Right;
     let mut table = Table::new(&[("T", right), (objective, right), ("design", Align::Left)]);
@@ -159,17 +207,15 @@ fn front_text(front: &SizeFront) -> String {
             member.design.notation.clone(),
         ]);
     }
-    format!(
-        "\nFront of satellites against {objective}, exact up to {} satellites\n{}",
-        front.up_to,
-        table.to_text()
-    )
+    let caption = format!(
+        "Front of satellites against {objective}, exact up to {} satellites",
+        front.up_to
+    );
+    section("Front", caption, table)
 }
 
-fn reached(all: &[BestReached]) -> String {
-    let Some(first) = all.first() else {
-        return String::new();
-    };
+fn reached(all: &[BestReached]) -> Option<ReportSection> {
+    let first = all.first()?;
     let right = Align::Right;
     let mut columns = vec![("T", right), ("design", Align::Left)];
     columns.extend(
@@ -185,18 +231,16 @@ fn reached(all: &[BestReached]) -> String {
         row.extend(one.constraints.iter().map(value));
         table.row(row);
     }
-    format!(
-        "\nBest that was reached with each number of satellites: the least violation of all designs{}\n{}",
-        skipped_text(skipped),
-        table.to_text()
-    )
+    let caption = format!(
+        "Best that was reached with each number of satellites: the least violation of all designs{}",
+        skipped_text(skipped)
+    );
+    Some(section("Closest designs", caption, table))
 }
 
 /// Each design with the samples under which it keeps the constraints and the worst value of each quantity.
-fn robustness(rows: &[RobustnessRow]) -> String {
-    let Some(first) = rows.first() else {
-        return String::new();
-    };
+fn robustness(rows: &[RobustnessRow]) -> Option<ReportSection> {
+    let first = rows.first()?;
     let right = Align::Right;
     let mut columns = vec![("design", Align::Left), ("T", right), ("kept", right)];
     columns.extend(
@@ -225,11 +269,9 @@ fn robustness(rows: &[RobustnessRow]) -> String {
         row.push(failing.join(", "));
         table.row(row);
     }
-    format!(
-        "\nUnder other samples (half step, half grid, eight phases of the GNSS): how many keep the constraints, and the \
-         worst values\n{}",
-        table.to_text()
-    )
+    let caption = "Under other samples (half step, half grid, eight phases of the GNSS): how many keep the \
+                   constraints, and the worst values";
+    Some(section("Other samples", caption, table))
 }
 
 /// The value with the least margin; one without a value is the worst.
@@ -246,9 +288,11 @@ fn skipped_text(skipped: usize) -> String {
     }
 }
 
-fn below(all: &[RejectedLevel]) -> String {
+fn below(all: &[RejectedLevel]) -> ReportSection {
+    let title = "Fewer satellites";
     if all.is_empty() {
-        return "\nno design of the search space has fewer satellites\n".to_owned();
+        let none = "no design of the search space has fewer satellites";
+        return section(title, none, Table::new(&[]));
     }
     let right = Align::Right;
     let mut table = Table::new(&[
@@ -273,11 +317,11 @@ fn below(all: &[RejectedLevel]) -> String {
         }
         table.row(row);
     }
-    format!(
-        "\nRejected with fewer satellites, and the proof for the design that took the most samples{}\n{}",
-        skipped_text(skipped),
-        table.to_text()
-    )
+    let caption = format!(
+        "Rejected with fewer satellites, and the proof for the design that took the most samples{}",
+        skipped_text(skipped)
+    );
+    section(title, caption, table)
 }
 
 /// A proof in words.
@@ -309,7 +353,7 @@ fn reason(witness: &Witness) -> String {
 }
 
 /// What was evaluated, and what each rule saved.
-fn cost(result: &SizeResult) -> String {
+fn cost(result: &SizeResult) -> ReportSection {
     let evaluations = &result.evaluations;
     let right = Align::Right;
     let mut table = Table::new(&[
@@ -326,11 +370,14 @@ fn cost(result: &SizeResult) -> String {
             format!("{:.2} %", 100.0 * rule.samples_saved),
         ]);
     }
-    format!(
-        "\n{}evaluated: {} begun, {} in full, {:.3} % of the samples of a sweep\n",
-        table.to_text(),
+    let evaluated = format!(
+        "evaluated: {} begun, {} in full, {:.3} % of the samples of a sweep",
         evaluations.begun,
         evaluations.finished,
         100.0 * evaluations.samples_share
-    )
+    );
+    ReportSection {
+        remarks: vec![evaluated],
+        ..section("What was evaluated", "", table)
+    }
 }

@@ -1,14 +1,13 @@
 //! What lies between the steps of the grid, as text.
 
-use super::value;
+use super::{section, value};
+use crate::report::section::ReportSection;
 use crate::report::{Align, Table};
 use crate::run::size::{Refinement, SizeResult};
 
 /// A table of the designs between the steps, and what follows from them.
-pub(super) fn text(result: &SizeResult) -> String {
-    let Some(first) = result.refinement.first() else {
-        return String::new();
-    };
+pub(super) fn section_of(result: &SizeResult) -> Option<ReportSection> {
+    let first = result.refinement.first()?;
     let right = Align::Right;
     let mut columns = vec![
         ("T", right),
@@ -31,11 +30,11 @@ pub(super) fn text(result: &SizeResult) -> String {
         row.push(one.evaluations.to_string());
         table.row(row);
     }
-    format!(
-        "\nBetween the steps, around the closest rejected and the best designs: evidence, not a proof\n{}{}",
-        table.to_text(),
-        verdict(result)
-    )
+    let caption = "Between the steps, around the closest rejected and the best designs: evidence, not a proof";
+    Some(ReportSection {
+        remarks: vec![verdict(result)],
+        ..section("Between the steps", caption, table)
+    })
 }
 
 /// Whether fewer satellites were found.
@@ -45,14 +44,14 @@ fn verdict(result: &SizeResult) -> String {
     let fewer = result.refinement.iter().filter(is_fewer);
     match fewer.min_by_key(|one| one.satellites) {
         Some(one) => format!(
-            "{} satellites keep the constraints between the steps: {}; smaller steps of the search may find still fewer\n",
+            "{} satellites keep the constraints between the steps: {}; smaller steps of the search may find still fewer",
             one.satellites, one.design.notation
         ),
         None => match result.fewest {
-            Some(fewest) => format!(
-                "no design with fewer than {fewest} satellites was found between the steps\n"
-            ),
-            None => "no design that keeps the constraints was found between the steps\n".to_owned(),
+            Some(fewest) => {
+                format!("no design with fewer than {fewest} satellites was found between the steps")
+            }
+            None => "no design that keeps the constraints was found between the steps".to_owned(),
         },
     }
 }
