@@ -15,6 +15,7 @@ pub(crate) fn subject(design: &str, samples: usize) -> ExportSubject {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().expect("a date"));
     ExportSubject {
         constellation: Constellation::of_design(design.parse().expect(SOUND)),
+        down: Vec::new(),
         naming: Naming::default(),
         model: Model::J2,
         grid: TimeGrid::new(epoch, samples as f64 * 60.0, 60.0).expect(SOUND),

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from navwalker import _native
 from navwalker._constellation import Constellation, Path
-from navwalker._keys import toml_of
 
 if TYPE_CHECKING:
     from navwalker._progress import Tick
@@ -44,21 +43,18 @@ def run(
 
 
 def arguments_of(constellation: Constellation | str) -> list[str]:
-    """A constellation as arguments of a command."""
+    """A constellation as arguments of a command, with all of its satellites."""
     if isinstance(constellation, str):
         return ["--design", constellation]
-    given = []
-    if constellation.out_of_service:
-        given += ["--set", f"outages.satellites={toml_of(constellation.out_of_service)}"]
     files = constellation._files
     if files is None:
         name = f"{constellation.name}=" if constellation.name != constellation.notation else ""
-        return [*given, "--design", f"{name}{constellation.notation}"]
+        return ["--design", f"{name}{constellation.notation}"]
     if len(files["paths"]) > 1:
         raise _native.FileError("a command takes one file or directory; put the files in a directory")
     selection = [part for option in ("only", "exclude") for one in files[option] for part in (f"--{option}", one)]
     form = [] if files["format"] is None else ["--input-format", files["format"]]
-    return [*given, "--constellation", f"{constellation.name}={files['paths'][0]}", *selection, *form]
+    return ["--constellation", f"{constellation.name}={files['paths'][0]}", *selection, *form]
 
 
 def export(
@@ -76,11 +72,8 @@ def export(
     more = [part for name, value in options.items() for part in (f"--{name.replace('_', '-')}", str(value))]
     switches = [switch for switch, on in (("--check", check), ("--force", force)) if on]
     place = os.fspath(out)
-    if constellation.out_of_service:
-        names = ", ".join(constellation.out_of_service)
-        text = f"files have every satellite, in service or not; {names} too"
-        warnings.warn(text, _native.NavwalkerWarning, stacklevel=3)
-    arguments = ["export", *arguments_of(constellation), "--as", products, "--out", place, *switches, *more]
+    without = [part for name in constellation.out_of_service for part in ("--without", name)]
+    arguments = ["export", *arguments_of(constellation), *without, "--as", products, "--out", place, *switches, *more]
     status, result = run(arguments, _native.FileError, scenario=scenario)
     if status != 0:
         raise _native.FileError(f"what was read back from {place} differs from the constellation:\n{result}")

@@ -92,8 +92,8 @@ class Constellation:
         """Writes files for other tools into the directory ``out`` and returns their manifest.
 
         ``formats`` are those of ``navwalker export --as``; ``check`` reads every file back and checks it against its
-        standard; further options are those of the command: ``frame="ITRF"``, ``omm_syntax="xml"``. Files have every
-        satellite, those that are out of service included, of which a warning tells.
+        standard; further options are those of the command: ``frame="ITRF"``, ``omm_syntax="xml"``. Satellites that are
+        out of service are in no file, and the others are called as if all were there.
         """
         from navwalker._commands import export
 

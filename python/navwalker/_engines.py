@@ -1,4 +1,4 @@
-"""Where the chunks of a sweep are evaluated: by Dask, or by an executor like those of ``concurrent.futures``."""
+"""Where the chunks of a sweep, or the tiles of an evaluation, are evaluated: by Dask, or by an executor like those of ``concurrent.futures``."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from navwalker import _native
 from navwalker._sweep import Stopped
-from navwalker._worker import evaluate_chunk, pack, this_process
+from navwalker._worker import evaluate_part, pack, this_process
 
 if TYPE_CHECKING:
     from navwalker._scenario import Scenario
 
-# Chunks that are given out before the first is back, for each worker, and at least.
+# Parts, chunks or tiles, that are given out before the first is back, for each worker, and at least.
 _FOR_EACH_WORKER = 3
 _AT_LEAST = 16
 
@@ -49,7 +49,7 @@ class Future(Protocol):
 
 
 class Executor(Protocol):
-    """What evaluates chunks: an executor like those of ``concurrent.futures``, or a ``Client`` of Dask."""
+    """What evaluates chunks or tiles: an executor like those of ``concurrent.futures``, or a ``Client`` of Dask."""
 
     def submit(self, work: Callable[..., Any], /, *args: Any, **options: Any) -> Any: ...
 
@@ -57,19 +57,20 @@ class Executor(Protocol):
 class ExecutorEngine:
     """Chunks by anything that is shaped like ``concurrent.futures.Executor``."""
 
-    def __init__(self, executor: Executor, scenario: Scenario) -> None:
+    def __init__(self, executor: Executor, scenario: Scenario, kind: str) -> None:
         self._executor = executor
-        self._common = pack(scenario._engine), _native.__version__, this_process()
+        self._common = kind, pack(scenario._engine), _native.__version__, this_process()
+        self.kind = kind
 
     def window(self) -> int:
         """How many chunks may be given out at a time."""
         workers = getattr(self._executor, "_max_workers", None)
         return max(_AT_LEAST, _FOR_EACH_WORKER * workers if isinstance(workers, int) else 4 * _AT_LEAST)
 
-    def submit(self, name: str, chunk: bytes) -> Future:
-        """Gives out a chunk."""
+    def submit(self, name: str, part: bytes) -> Future:
+        """Gives out a part."""
         try:
-            future: Future = self._executor.submit(evaluate_chunk, *self._common, chunk)
+            future: Future = self._executor.submit(evaluate_part, *self._common, part)
         except BrokenExecutor as error:
             raise Stopped(_broken(error)) from error
         except RuntimeError as error:
@@ -83,9 +84,9 @@ class ExecutorEngine:
 
 def _on_dask(*arguments: Any) -> Any:
     """The work of a task of Dask; it imports the package itself, so that a worker without it can say so."""
-    from navwalker._worker import evaluate_chunk
+    from navwalker._worker import evaluate_part
 
-    return evaluate_chunk(*arguments)
+    return evaluate_part(*arguments)
 
 
 # Functions of the main module are sent by value. A worker that cannot import the module of one ends, without a word to the client.
@@ -95,8 +96,9 @@ _on_dask.__module__ = "__main__"
 class DaskEngine:
     """Chunks by a ``Client`` of Dask."""
 
-    def __init__(self, client: Any, scenario: Scenario) -> None:
+    def __init__(self, client: Any, scenario: Scenario, kind: str) -> None:
         self._client = client
+        self.kind = kind
         self._scenario = pack(scenario._engine)
         self._common = _native.__version__, this_process()
         self._given: Any = None
@@ -113,13 +115,13 @@ class DaskEngine:
             self._counted_s = time.monotonic()
         return max(_AT_LEAST, _FOR_EACH_WORKER * self._threads)
 
-    def submit(self, name: str, chunk: bytes) -> Future:
-        """Gives out a chunk; it is tried again on a worker that has failed, and elsewhere if the worker is lost."""
+    def submit(self, name: str, part: bytes) -> Future:
+        """Gives out a part; it is tried again on a worker that has failed, and elsewhere if the worker is lost."""
         if self._given is None:
             # Sent once. It is the result of a task and not data, so that it is not lost with the workers that hold it.
             self._given = self._client.submit(bytes, self._scenario, pure=False)
-        arguments = self._given, *self._common, chunk
-        key = f"navwalker-chunk-{name}-{self._generation}"
+        arguments = self.kind, self._given, *self._common, part
+        key = f"navwalker-{self.kind}-{name}-{self._generation}"
         future: Future = self._client.submit(_on_dask, *arguments, key=key, retries=2)
         return future
 
@@ -148,22 +150,22 @@ class DaskEngine:
 Engine = ExecutorEngine | DaskEngine
 
 
-def engine_of(executor: Any, scenario: Scenario) -> Engine:
-    """The engine for what a caller gives as ``executor``."""
+def engine_of(executor: Any, scenario: Scenario, kind: str) -> Engine:
+    """The engine for what a caller gives as ``executor``, for parts that are a ``chunk`` or a ``tile``."""
     if type(executor).__module__.split(".")[0] == "distributed" and hasattr(executor, "scheduler_info"):
         if getattr(executor, "asynchronous", False):
             raise Stopped("the client of Dask is asynchronous, expected one that is not")
-        return DaskEngine(executor, scenario)
+        return DaskEngine(executor, scenario, kind)
     if not callable(getattr(executor, "submit", None)):
         kind = type(executor).__name__
         raise _native.NavwalkerError(f"executor is a {kind}, expected a Client of Dask or an executor with submit")
-    return ExecutorEngine(executor, scenario)
+    return ExecutorEngine(executor, scenario, kind)
 
 
 def evaluate(
-    engine: Engine, numbers: Iterable[int], chunk: Callable[[int], tuple[str, bytes]], put: Callable[[int, bytes], None]
+    engine: Engine, numbers: Iterable[int], part: Callable[[int], tuple[str, bytes]], put: Callable[[int, bytes], None]
 ) -> None:
-    """Evaluates chunks by an engine and puts away their results as they come; ``chunk`` gives the name and the
+    """Evaluates parts by an engine and puts away their results as they come; ``part`` gives the name and the
     bytes of one."""
     waiting = deque((number, 0) for number in numbers)
     done: SimpleQueue[tuple[int, int]] = SimpleQueue()
@@ -173,7 +175,7 @@ def evaluate(
             room = engine.window() - len(running) if waiting else 0
             for _ in range(min(room, len(waiting))):
                 one = waiting.popleft()
-                running[one] = future = engine.submit(*chunk(one[0]))
+                running[one] = future = engine.submit(*part(one[0]))
                 future.add_done_callback(partial(_note, done, one))
             number, attempt = one = _next(done)
             try:
@@ -182,7 +184,7 @@ def evaluate(
                 if attempt + 1 < _ATTEMPTS and engine.lost(error):
                     waiting.appendleft((number, attempt + 1))
                     continue
-                raise _explained(error, number) from error
+                raise _explained(error, f"{engine.kind} {number + 1}") from error
             put(number, result)
     finally:
         for future in running.values():
@@ -202,19 +204,19 @@ def _next(done: SimpleQueue[tuple[int, int]]) -> tuple[int, int]:
             continue
 
 
-def _explained(error: BaseException, number: int) -> BaseException:
+def _explained(error: BaseException, part: str) -> BaseException:
     """An error of a worker as one that says what to do."""
     if isinstance(error, (KeyboardInterrupt, SystemExit, _native.NavwalkerError)):
         return error
     if isinstance(error, BrokenExecutor):
         return Stopped(_broken(error))
     if isinstance(error, CancelledError):
-        return Stopped("the executor was shut down, or the chunks were cancelled")
+        return Stopped("the executor was shut down, or its work was cancelled")
     if isinstance(error, ModuleNotFoundError) and (error.name or "").split(".")[0] == "navwalker":
         return Stopped(f"a worker has no navwalker, or an older one: {error}; install {_native.__version__} there")
     if type(error).__name__ == "KilledWorker":
-        return Stopped(f"chunk {number + 1}: the workers that began it were lost, one after the other: {error}")
-    return Stopped(f"chunk {number + 1}: {type(error).__name__}: {error}")
+        return Stopped(f"{part}: the workers that began it were lost, one after the other: {error}")
+    return Stopped(f"{part}: {type(error).__name__}: {error}")
 
 
 def _broken(error: BaseException) -> str:

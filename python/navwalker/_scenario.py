@@ -119,7 +119,13 @@ class Scenario:
 
     @overload
     def evaluate(  # type: ignore[overload-overlap]  # a text is a notation, although it is an iterable of texts too
-        self, constellations: Given, *, errors: Errors = "raise", progress: bool = False
+        self,
+        constellations: Given,
+        *,
+        errors: Errors = "raise",
+        progress: bool = False,
+        tiles: int | None = None,
+        executor: Executor | None = None,
     ) -> Metrics: ...
     @overload
     def evaluate(
@@ -147,6 +153,8 @@ class Scenario:
         errors: Errors = "raise",
         progress: bool = False,
         pattern: str = "delta",
+        tiles: int | None = None,
+        executor: Executor | None = None,
         **columns: Any,
     ) -> Metrics | Table:
         """The metrics of a constellation, or the table of several.
@@ -156,6 +164,10 @@ class Scenario:
         ``inclination_deg``, ``altitude_km`` and ``phasing``, with one ``pattern``. A constellation that cannot be
         evaluated raises :class:`DesignError`; with ``errors="column"`` its row has no metrics and says why in the
         column ``error``. ``progress`` says on stderr how many of several are done.
+
+        One design that takes long can be cut into ``tiles``, each of some instants at all points, with the metrics of the
+        whole to the bit: a scenario of any size, in the memory of a tile. ``executor`` evaluates them elsewhere, as that of
+        :meth:`sweep`. Their files, 8 bytes a sample, are in the temporary directory until they are merged.
         """
         if errors not in ("raise", "column"):
             raise _native.NavwalkerError(f"errors is {errors!r}, expected 'raise' or 'column'")
@@ -168,7 +180,14 @@ class Scenario:
             raise _native.NavwalkerError("give constellations or columns, not both")
         if isinstance(constellations, (str, Constellation)):
             one = self._native_of(constellations)
-            return Metrics(one.name, self._engine.evaluate(one))
+            if tiles is not None:
+                from navwalker import _tiles
+
+                return _tiles.evaluate(self, one, tiles, executor, progress)
+            if executor is None:
+                return Metrics(one.name, self._engine.evaluate(one))
+        if tiles is not None or executor is not None:
+            raise _native.NavwalkerError("tiles and executor are of one design, both of them; use sweep for many")
         given = list(constellations)
         if not given:
             raise _native.NavwalkerError("there is no constellation to evaluate")

@@ -129,7 +129,7 @@ def _evaluate(scenario: Scenario, native: _native.NativeSweep, executor: Any, ti
         return
     from navwalker import _engines
 
-    _engines.evaluate(_engines.engine_of(executor, scenario), numbers, native.chunk, put)
+    _engines.evaluate(_engines.engine_of(executor, scenario, "chunk"), numbers, native.chunk, put)
 
 
 def _listed(one: str | Constellation) -> tuple[str, str | None]:

@@ -1,4 +1,4 @@
-"""What a worker of a sweep does with a chunk.
+"""What a worker does with a chunk of a sweep, or a tile of an evaluation.
 
 What reaches it is plain bytes and texts, which any version reads, so that a worker of another version can say so.
 """
@@ -28,14 +28,16 @@ def pack(engine: _native.Engine) -> bytes:
     return pickle.dumps((*engine.packed(), engine.threads))
 
 
-def evaluate_chunk(scenario: bytes, version: str, client: str, chunk: bytes) -> bytes:
-    """The result of a chunk of a sweep that the process ``client`` began with this version of the package."""
+def evaluate_part(kind: str, scenario: bytes, version: str, client: str, part: bytes) -> bytes:
+    """The result of a part, a chunk of a sweep or a tile of an evaluation, that the process ``client`` began with this
+    version of the package."""
     own = _native.__version__
     if version != own:
         raise _native.NavwalkerError(
             f"the client has navwalker {version} and the worker {this_process()} has {own}; install one version on both"
         )
-    return _native.run_chunk(_engine_of(scenario, client), chunk)
+    engine = _engine_of(scenario, client)
+    return _native.run_chunk(engine, part) if kind == "chunk" else _native.run_tile(engine, part)
 
 
 def _engine_of(packed: bytes, client: str) -> _native.Engine:

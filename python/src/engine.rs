@@ -3,7 +3,7 @@
 use crate::columns::Columns;
 use crate::constellation::NativeConstellation;
 use crate::design_columns::{self, Evaluated};
-use crate::errors::{self, DesignError, NavwalkerError};
+use crate::errors::{self, DesignError, NavwalkerError, ScenarioError};
 use crate::interruptible::{Shared, Tick, on_pool};
 use crate::states;
 use navwalker::cli::embedded::{self, PackedStudy, ScenarioText, Study, error_text};
@@ -40,7 +40,10 @@ type Pack<'py> = (String, Vec<Bound<'py, PyBytes>>);
 #[pyclass(frozen, module = "navwalker._native")]
 pub(crate) struct Engine {
     pub(crate) study: Mutex<Study>,
+    /// Of evaluations of any size, in tiles.
     evaluator: OnceLock<Arc<Evaluator>>,
+    /// Set once a whole evaluation is known not to be too large.
+    is_whole: OnceLock<()>,
     pub(crate) threads: Option<usize>,
 }
 
@@ -49,12 +52,26 @@ impl Engine {
         self.study.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// The evaluator, unless one evaluation is very large.
     pub(crate) fn evaluator(&self, py: Python<'_>) -> PyResult<Arc<Evaluator>> {
+        let evaluator = self.evaluator_in_tiles(py)?;
+        if self.is_whole.get().is_none() {
+            embedded::require_whole(evaluator.setup()).map_err(|error| {
+                let flags = "--allow-large, or evaluate --tile I/N";
+                ScenarioError::new_err(error_text(&error).replace(flags, "evaluate(…, tiles=N)"))
+            })?;
+            self.is_whole.get_or_init(|| ());
+        }
+        Ok(evaluator)
+    }
+
+    /// The evaluator for evaluations in tiles, of any size.
+    pub(crate) fn evaluator_in_tiles(&self, py: Python<'_>) -> PyResult<Arc<Evaluator>> {
         if let Some(known) = self.evaluator.get() {
             return Ok(Arc::clone(known));
         }
         let study = self.study().clone();
-        let make = move |_: &Shared| embedded::noting(|| study.evaluator());
+        let make = move |_: &Shared| embedded::noting(|| study.evaluator_in_tiles());
         let (made, printed) = on_pool(py, self.threads, None, make)?;
         errors::warn(py, &printed)?;
         let made = Arc::new(made.map_err(|error| errors::scenario(&error))?);
@@ -145,6 +162,7 @@ impl Engine {
         Ok(Self {
             study: Mutex::new(study.map_err(|error| errors::scenario(&error))?),
             evaluator: OnceLock::new(),
+            is_whole: OnceLock::new(),
             threads,
         })
     }
@@ -156,6 +174,7 @@ impl Engine {
         Ok(Self {
             study: Mutex::new(study.map_err(|error| errors::scenario(&error))?),
             evaluator: OnceLock::new(),
+            is_whole: OnceLock::new(),
             threads,
         })
     }
@@ -170,7 +189,7 @@ impl Engine {
 
     /// Makes what does not depend on a constellation, unless it is there.
     fn prepare(&self, py: Python<'_>) -> PyResult<()> {
-        self.evaluator(py).map(drop)
+        self.evaluator_in_tiles(py).map(drop)
     }
 
     #[getter]
@@ -467,7 +486,7 @@ impl Engine {
 }
 
 /// Metrics as a dictionary; a metric without a value is None.
-fn dictionary<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn dictionary<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Bound<'py, PyDict>> {
     let dictionary = PyDict::new(py);
     let values =
         metric_values(metrics).map_err(|error| NavwalkerError::new_err(error.to_string()))?;

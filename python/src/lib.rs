@@ -15,6 +15,7 @@ mod search;
 mod sky;
 mod states;
 mod sweep;
+mod tiles;
 
 use pyo3::prelude::*;
 
@@ -39,6 +40,8 @@ mod _native {
     use super::sky::dilutions;
     #[pymodule_export]
     use super::sweep::{NativeSweep, begin_sweep, read_sweep, run_chunk};
+    #[pymodule_export]
+    use super::tiles::{merge_tiles, run_tile, tile_jobs};
 
     /// Adds what is no function or class.
     #[pymodule_init]

@@ -20,11 +20,6 @@ pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
         process: 0,
         known: Vec::new(),
     });
-    let most = 4 * thread::available_parallelism().map_or(1, usize::from);
-    if let Some(threads) = threads.filter(|threads| !(1..=most).contains(threads)) {
-        let why = format!("threads is {threads}, expected 1 to {most}, four for each core");
-        return Err(NavwalkerError::new_err(why));
-    }
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     if pools.process != process::id() {
         pools.process = process::id();
@@ -34,6 +29,12 @@ pub(crate) fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let known = pools.known.iter().find(|(number, _)| *number == threads);
     if let Some((_, pool)) = known {
         return Ok(Arc::clone(pool));
+    }
+    // Last, since it reads files of the kernel, which takes longer than the metrics of a small study.
+    let most = 4 * thread::available_parallelism().map_or(1, usize::from);
+    if let Some(threads) = threads.filter(|threads| !(1..=most).contains(threads)) {
+        let why = format!("threads is {threads}, expected 1 to {most}, four for each core");
+        return Err(NavwalkerError::new_err(why));
     }
     let builder = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
     // Work that panics ends without a result, which its caller reports.

@@ -8,7 +8,8 @@ use anyhow::Context;
 use navwalker::cli::embedded::{self, ChunkState, Study, SweepStore};
 use navwalker::evaluate::Evaluator;
 use navwalker::run::sweep::{
-    SweepChunk, SweepDesigns, SweepPlan, SweptDesign, TableFormat, read_chunk, sweep_time_s,
+    SampleShape, SweepChunk, SweepDesigns, SweepPlan, SweptDesign, TableFormat, read_chunk,
+    sweep_time_s,
 };
 use navwalker::run::typed_columns::TypedColumns;
 use pyo3::prelude::*;
@@ -90,7 +91,7 @@ pub(crate) fn begin_sweep(
     let evaluator = engine.evaluator(py)?;
     let work = move |_: &Shared| {
         let opened = with_designs(list.as_ref(), (&study, &evaluator), |designs| {
-            let (points, samples) = (designs.points()?, evaluator.setup().sample_count());
+            let (points, samples) = (designs.points()?, SampleShape::from(evaluator.setup()));
             if points > LARGE && !allow_large {
                 let time_s = sweep_time_s(points as f64, samples, designs.mean_satellites()?);
                 anyhow::bail!(

@@ -50,3 +50,18 @@ def test_own_descriptions_are_not_worth_a_warning_but_foreign_files_are(tmp_path
     (directory / "notes.txt").write_text("not a constellation\n")
     with pytest.warns(nw.NavwalkerWarning, match="left out: 1 .notes.txt."):
         assert nw.read(directory).satellites == 4
+
+
+def test_export_without(small, tmp_path):
+    """Files have the satellites that are left, under the names that they have among all; a scenario's own outages stay."""
+    design = nw.Constellation("delta:55:6/3/1@925")
+    left = design.without("NW-P01-S01").export(tmp_path / "left", "oem", scenario=small, check=True)
+    assert left["out_of_service"] == 1 and len(left["files"]) == 5
+    whole = design.export(tmp_path / "whole", "oem", scenario=small)
+    names = [{file["path"] for file in one["files"]} for one in (whole, left)]
+    assert names[0] - names[1] == {"oem/NW-P01-S01.oem"}
+    own = small.replace(outages_satellites=["NW-P03"])
+    both = design.without("NW-P01-S01").export(tmp_path / "both", "tle", scenario=own)
+    assert both["out_of_service"] == 3
+    with pytest.raises(nw.FileError, match="'NW-P09' is not a satellite"):
+        design.without("NW-P09").export(tmp_path / "wrong", "tle", scenario=small)

@@ -188,12 +188,12 @@ pub(crate) fn propagate_member(one: &Constellation, setup: &Setup) -> Result<Eph
 }
 
 /// Refuses `--without` where all satellites count, in service or not.
-pub(crate) fn refuse_without(names: &[String], what: &str) -> Result<()> {
+pub(crate) fn refuse_without(names: &[String]) -> Result<()> {
     match names.first() {
         None => Ok(()),
         Some(name) => bail!(
-            "--without {name}: {what} every satellite, in service or not; --without is of evaluate, report and plot, and \
-             --exclude leaves satellites of files (--constellation) out"
+            "--without {name}: validate compares every satellite, in service or not; --without is of evaluate, export, report \
+             and plot, and --exclude leaves satellites of files (--constellation) out"
         ),
     }
 }

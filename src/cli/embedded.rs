@@ -2,6 +2,7 @@
 //! constellations, with what they print kept instead of printed.
 
 pub use super::args::ScenarioText;
+pub use super::commands::evaluate::tiles::{design_tile, merged_design};
 pub use super::output::{Message, MessageKind, Transcript};
 pub use super::progress::{Reached, SharedProgress};
 pub use super::study::{PackedStudy, Study};
@@ -122,6 +123,14 @@ pub fn ask_to_stop() {
 /// Does some work and gives what it printed beside what it found.
 pub fn noting<T>(work: impl FnOnce() -> T) -> (T, Transcript) {
     output::kept(work)
+}
+
+/// Refuses a whole evaluation that is very large or does not fit into memory; one in tiles may be as large.
+///
+/// # Errors
+/// If it is.
+pub fn require_whole(setup: &Setup) -> Result<()> {
+    limits::check_whole(setup)
 }
 
 /// The text of an error as the program prints it, one cause per line.

@@ -5,7 +5,7 @@ mod replace;
 mod staging;
 
 pub(crate) use guard::{refuse_foreign, refuse_inputs};
-pub(crate) use staging::{is_staged, lock};
+pub(crate) use staging::{is_staged, lock, shared_lock};
 
 use crate::cli::interrupt::{self, Removed};
 use crate::cli::output;

@@ -82,8 +82,16 @@ impl Study {
 
     /// The same with further satellites out of service throughout.
     pub(crate) fn without(self, args: &StudyArgs, satellites: &[String]) -> Result<Self> {
+        match self.taking_out(satellites)? {
+            Some(key) => Self::load(args, &[key]),
+            None => Ok(self),
+        }
+    }
+
+    /// The key of further satellites that are out of service throughout, beside those of the scenario; `None` without any.
+    pub(crate) fn taking_out(&self, satellites: &[String]) -> Result<Option<String>> {
         if satellites.is_empty() {
-            return Ok(self);
+            return Ok(None);
         }
         let mut all = self.scenario.outages.satellites.clone();
         for name in satellites {
@@ -91,8 +99,10 @@ impl Study {
                 all.push(name.clone());
             }
         }
-        let all = serde_json::to_string(&all)?;
-        Self::load(args, &[format!("outages.satellites={all}")])
+        Ok(Some(format!(
+            "outages.satellites={}",
+            serde_json::to_string(&all)?
+        )))
     }
 
     /// The scenario of a run, which names the run's own copies of its files.
@@ -437,6 +447,16 @@ impl Study {
     pub fn evaluator(&self) -> Result<Evaluator> {
         let setup = self.setup_in_tiles()?;
         limits::check_whole(&setup)?;
+        say_of_setup(&setup);
+        Ok(Evaluator::new(setup)?)
+    }
+
+    /// The evaluator of the scenario for evaluations in tiles.
+    ///
+    /// # Errors
+    /// As [`Study::evaluator`].
+    pub fn evaluator_in_tiles(&self) -> Result<Evaluator> {
+        let setup = self.setup_in_tiles()?;
         say_of_setup(&setup);
         Ok(Evaluator::new(setup)?)
     }

@@ -88,7 +88,7 @@ impl SweepStore {
             path: path.to_owned(),
             plan,
             chunks,
-            _lock: shared_lock(path),
+            _lock: files::shared_lock(path),
         })
     }
 
@@ -365,13 +365,6 @@ fn rows_without_metrics(table: &TypedColumns) -> u64 {
         Some(ColumnValues::Real(of)) => of.iter().filter(|value| value.is_none()).count() as u64,
         _ => 0,
     }
-}
-
-/// A lock that several processes may have, which keeps the directory from being replaced meanwhile.
-fn shared_lock(path: &Path) -> Option<File> {
-    let file = File::open(path).ok()?;
-    file.lock_shared().ok()?;
-    Some(file)
 }
 
 /// Evaluates a chunk for the study that it is of, and gives its result as a file; `None` if it was stopped.

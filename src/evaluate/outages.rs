@@ -51,6 +51,35 @@ impl Setup {
         in_service(constellation, ephemeris, &self.outages, &self.gnss_names())
     }
 
+    /// Places of the satellites of a constellation that are out of service throughout.
+    ///
+    /// # Errors
+    /// As [`Setup::in_service`].
+    pub fn places_down(
+        &self,
+        constellation: &str,
+        ephemeris: Ephemeris,
+    ) -> Result<Vec<usize>, OutageError> {
+        let names: Vec<String> = ephemeris
+            .satellites()
+            .iter()
+            .map(|one| one.name.clone())
+            .collect();
+        let left = self.in_service(constellation, ephemeris)?;
+        let mut left = left.satellites().iter().map(|one| &one.name).peekable();
+        let is_down = |name: &String| left.next_if_eq(&name).is_none();
+        let mut down = Vec::new();
+        for (place, _) in names
+            .iter()
+            .map(is_down)
+            .enumerate()
+            .filter(|(_, down)| *down)
+        {
+            down.push(place);
+        }
+        Ok(down)
+    }
+
     /// The first outage of no GNSS satellite.
     #[must_use]
     pub fn outage_of_constellation(&self) -> Option<&SatelliteOutage> {

@@ -212,7 +212,16 @@ impl Constellation {
         Ok(setup.in_service(&self.name, all)?)
     }
 
-    /// The same, in which satellites with sampled states also have states between the samples of the grid.
+    /// Places of the satellites that are out of service throughout.
+    ///
+    /// # Errors
+    /// As [`Constellation::in_service`].
+    pub fn places_down(&self, setup: &Setup) -> Result<Vec<usize>, ConstellationError> {
+        let all = self.ephemeris(setup.grid, setup.model)?;
+        Ok(setup.places_down(&self.name, all)?)
+    }
+
+    /// The satellites on a grid, in which those with sampled states also have states between the samples of the grid.
     ///
     /// # Errors
     /// If a satellite cannot be propagated.

@@ -62,6 +62,8 @@ impl<W: Write, F: Fn(&str) -> io::Result<W> + Sync> Sink for F {
 pub struct ExportSubject {
     /// The constellation.
     pub constellation: Constellation,
+    /// Places of its satellites that are out of service throughout; no file has them, and the others are called as if they were there.
+    pub down: Vec<usize>,
     /// How its satellites are called that have no names or numbers of their own.
     pub naming: Naming,
     /// The model that propagates its shells and mean elements.

@@ -34,6 +34,9 @@ pub struct Manifest {
     /// The design, in Walker's notation; none for satellites from files alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub design: Option<String>,
+    /// Satellites of the constellation that are out of service throughout, and in no file.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub out_of_service: usize,
     /// Name of the constellation, unless it is a design.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub constellation: Option<String>,
@@ -276,6 +279,15 @@ impl<W: Write> Write for HashingWriter<W> {
     fn flush(&mut self) -> io::Result<()> {
         self.inner.flush()
     }
+}
+
+/// Whether there is nothing to say of a number.
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 #[cfg(test)]

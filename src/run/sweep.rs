@@ -18,6 +18,7 @@ pub use index::{ChunkEntry, IndexedChunk, SweepIndex, chunks_csv, read_chunks};
 
 use super::checkpoint::hex_sha256;
 use super::{ScenarioStamp, VERSION};
+use crate::evaluate::Setup;
 use crate::keyword::{Keyword, keywords};
 use crate::optimize::OptimizeError;
 use serde::{Deserialize, Serialize};
@@ -36,14 +37,16 @@ pub const INDEX_JSON: &str = "index.json";
 
 /// Time of a chunk on one thread that its size aims at, seconds.
 const CHUNK_S: f64 = 3.0;
-/// Most designs in a chunk, so that a list of tiny ones has chunks, too.
-const MOST_IN_CHUNK: f64 = 50_000.0;
 /// Times of evaluation on a processor with AVX-512, rounded: they need not be right on another, only the same.
 ///
 /// Time of a sample without LEO satellites, seconds.
 const SAMPLE_S: f64 = 10e-9;
 /// Time that each satellite adds to a sample, seconds.
 const SATELLITE_S: f64 = 60e-12;
+/// Time of the position of a satellite at an instant, and of its selection by the tiles, seconds.
+const POSITION_S: f64 = 4e-9;
+/// Time of a design beside its samples, its row of the table included, seconds.
+const DESIGN_S: f64 = 0.1e-3;
 
 keywords! {
     /// Where the designs of a sweep come from.
@@ -54,6 +57,24 @@ keywords! {
         Space = "space",
         /// A list.
         List = "list",
+    }
+}
+
+/// How many samples an evaluation has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SampleShape {
+    /// Ground points.
+    pub points: usize,
+    /// Instants.
+    pub instants: usize,
+}
+
+impl From<&Setup> for SampleShape {
+    fn from(setup: &Setup) -> Self {
+        Self {
+            points: setup.sites.len(),
+            instants: setup.grid.len(),
+        }
     }
 }
 
@@ -77,7 +98,7 @@ pub struct SweepPlan {
 }
 
 impl SweepPlan {
-    /// The plan of a sweep of these designs, over so many samples: in chunks of so many points if that is given, or else
+    /// The plan of a sweep of these designs, over these samples: in chunks of so many points if that is given, or else
     /// of [`chunk_size`].
     ///
     /// # Errors
@@ -86,7 +107,7 @@ impl SweepPlan {
         scenario: ScenarioStamp,
         designs: &SweepDesigns<'_>,
         format: TableFormat,
-        (chunk, samples): (Option<u64>, usize),
+        (chunk, samples): (Option<u64>, SampleShape),
     ) -> Result<Self, OptimizeError> {
         let mean = designs.mean_satellites()?;
         let (source, designs_sha256) = match designs {
@@ -159,15 +180,18 @@ impl SweepPlan {
 /// Designs in a chunk by a fixed model of the cost, so that every machine makes the same chunks: some seconds on one
 /// thread for designs of so many samples and, on average, satellites.
 #[must_use]
-pub fn chunk_size(samples: usize, mean_satellites: f64) -> u64 {
-    let design_s = samples as f64 * (SAMPLE_S + SATELLITE_S * mean_satellites);
-    (CHUNK_S / design_s).clamp(1.0, MOST_IN_CHUNK).round() as u64
+pub fn chunk_size(samples: SampleShape, mean_satellites: f64) -> u64 {
+    let designs = CHUNK_S / sweep_time_s(1.0, samples, mean_satellites);
+    designs.round().max(1.0) as u64
 }
 
 /// Time of all designs on one thread by the same model, seconds.
 #[must_use]
-pub fn sweep_time_s(designs: f64, samples: usize, mean_satellites: f64) -> f64 {
-    designs * samples as f64 * (SAMPLE_S + SATELLITE_S * mean_satellites)
+pub fn sweep_time_s(designs: f64, samples: SampleShape, mean_satellites: f64) -> f64 {
+    let instants = samples.instants as f64;
+    let at_instant_s = samples.points as f64 * (SAMPLE_S + SATELLITE_S * mean_satellites)
+        + POSITION_S * mean_satellites;
+    designs * (DESIGN_S + instants * at_instant_s)
 }
 
 #[cfg(test)]

@@ -5,12 +5,14 @@
 //! left is evaluated in full, so that the answer is that of a sweep that evaluates everything.
 //!
 //! The order of the samples is learnt between batches of designs, which do not depend on the threads, and so neither
-//! does any proof.
+//! does any proof. It is learnt anew in each part of the walk, so that parts can be tried anywhere and in any order.
 
 mod bound;
 mod closest;
 mod counts;
+mod level;
 mod order;
+mod parts;
 mod problem;
 mod refine;
 mod rules;
@@ -22,7 +24,8 @@ mod walk;
 mod witness;
 
 pub use closest::ClosestDesign;
+pub use level::{KeptDesign, LevelSummary, RuleSaving};
 pub use problem::SizeProblem;
 pub use refine::RefinedDesign;
-pub use walk::{KeptDesign, LevelSummary, RuleSaving, SizeSearch};
+pub use walk::SizeSearch;
 pub use witness::{PointWitness, RejectionBasis, Witness};

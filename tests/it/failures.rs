@@ -503,19 +503,85 @@ fn other_commands_take_or_refuse_without() {
     let without = plot(&[&map[..], &["--without", "NW-P02"]].concat());
     let outages = plot(&[&map[..], &["--set", "outages.satellites=[\"NW-P02\"]"]].concat());
     assert!(whole != without && without == outages);
-    for (command, what) in [
-        ("export", "export writes"),
-        ("validate", "validate compares"),
-    ] {
-        let more: &[&str] = match command {
-            "export" => &["--as", "tle", "--out", "out"],
-            _ => &["--against", "sgp4"],
-        };
-        let arguments = [&[command, "--without", "NW-P02"], &design[..], more].concat();
-        let error = refused(&arguments);
-        let expected = format!("--without NW-P02: {what} every satellite, in service or not");
-        assert!(error.contains(&expected), "{error}");
-    }
+    let arguments = [
+        &["validate", "--without", "NW-P02", "--against", "sgp4"],
+        &design[..],
+    ]
+    .concat();
+    let error = refused(&arguments);
+    let expected = "--without NW-P02: validate compares every satellite, in service or not";
+    assert!(error.contains(expected), "{error}");
+}
+
+/// An export without some satellites has the others as they are among all: names, numbers and elements; by the flag as by the scenario,
+/// and what is read back is what was exported.
+#[test]
+fn an_export_leaves_out_what_is_out_of_service() {
+    let place = TempDir::new().unwrap();
+    let design = ["--design", "B=delta:53:12/3/1@1000+star:90:4/2/1@1100"];
+    let export = |out: &str, more: &[&str]| {
+        let products = [
+            "export",
+            "--as",
+            "tle,csv,oem,stk-scenario,czml",
+            "--out",
+            out,
+        ];
+        let ran = ran(
+            place.path(),
+            &with(&[&products[..], &design[..], more].concat()),
+        );
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        crate::common::contents(&place.path().join(out))
+    };
+    let text =
+        |out: &str, name: &str| fs::read_to_string(place.path().join(out).join(name)).unwrap();
+    let whole = export("whole", &["--check"]);
+    let left = export("left", &["--without", "NW-A-P02,NW-B-P01-S02", "--check"]);
+    let key = "outages.satellites=[\"NW-A-P02\",\"NW-B-P01-S02\",\"GEO-1\"]";
+    export("key", &["--set", key]);
+    assert_eq!(
+        text("key", "constellation.tle"),
+        text("left", "constellation.tle")
+    );
+    let of_whole: Vec<_> = whole
+        .keys()
+        .filter(|path| path.starts_with("oem"))
+        .collect();
+    let of_left: Vec<_> = left.keys().filter(|path| path.starts_with("oem")).collect();
+    assert_eq!((of_whole.len(), of_left.len()), (16, 11));
+    assert!(of_left.iter().all(|name| of_whole.contains(name)));
+    let (all, kept) = (
+        text("whole", "constellation.tle"),
+        text("left", "constellation.tle"),
+    );
+    let of_lost = |name: &str| name.starts_with("NW-A-P02-") || name == "NW-B-P01-S02";
+    let lines: Vec<&str> = all.lines().collect();
+    let expected = lines.chunks(3).filter(|set| !of_lost(set[0].trim()));
+    let expected: Vec<&str> = expected.flatten().copied().collect();
+    assert_eq!(kept.lines().collect::<Vec<_>>(), expected);
+    let manifest = text("left", "manifest.json");
+    assert!(manifest.contains("\"out_of_service\": 5"), "{manifest}");
+    assert!(!text("whole", "manifest.json").contains("out_of_service"));
+    let oem = String::from_utf8(left[of_left[0]].clone()).unwrap();
+    assert!(
+        oem.contains("Out of service, and not here: 5 satellites of 16"),
+        "{oem}"
+    );
+    let wrong = [
+        "export",
+        "--as",
+        "tle",
+        "--out",
+        "x",
+        "--without",
+        "NW-A-P09",
+    ];
+    let error = refused(&[&wrong[..], &design[..]].concat());
+    assert!(
+        error.contains("'NW-A-P09' is not a satellite or plane of B"),
+        "{error}"
+    );
 }
 
 /// The map of the worst loss has, at each point, the worst of the maps without each satellite.

@@ -139,6 +139,7 @@ const ROWS: &[Row] = &[
         Stdout,
     ),
     Row("size", "out", "FEWEST", "--out out", Out),
+    Row("size", "shard", "--out out FEWEST", "--shard 1/2", Stdout),
     Row("size", "slack", "--out out FEWEST", "--slack 3", Stdout),
     Row(
         "size",
@@ -471,6 +472,13 @@ const ROWS: &[Row] = &[
         "design",
         "SMALL --as tle --out out",
         "DESIGN",
+        Out,
+    ),
+    Row(
+        "export",
+        "without",
+        "DESIGN SMALL --as tle --out out",
+        "--without NW-P01-S02",
         Out,
     ),
     Row("export", "run", "--as tle --out out", "--run run", Out),

@@ -348,3 +348,91 @@ fn a_search_without_checkpoint_starts_over() {
     assert_eq!(damaged.status, 2);
     assert!(damaged.stderr.contains("is damaged"), "{}", damaged.stderr);
 }
+
+/// Shards in any order leave what one process leaves, also where one of their files is cut short, and are taken up where they are of
+/// this search.
+#[test]
+fn shards_leave_what_one_process_leaves() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    // 27 135 points of the grid in four parts.
+    let fine = [
+        "--set",
+        "search.inclination-step-deg=0.1",
+        "--set",
+        AVAILABILITY,
+    ];
+    let found = |further: &[&str]| {
+        let words = size(&[&fine[..], &["--format", "csv"], further].concat());
+        let told = words.iter().map(String::as_str);
+        let told: Vec<&str> = told.filter(|word| *word != "--quiet").collect();
+        let found = ran(place, &told);
+        assert_eq!(found.status, 0, "{}", found.stderr);
+        found
+    };
+    let whole = found(&["--out", "whole"]);
+    for shard in ["3/3", "1/3", "2/3"] {
+        let shard = found(&["--out", "parts", "--shard", shard]);
+        assert_eq!(shard.stdout, "");
+    }
+    let mut parts: Vec<_> = fs::read_dir(place.join("parts/parts"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    parts.sort();
+    assert!(parts.len() > 1, "{parts:?}");
+    let bytes = fs::read(&parts[1]).unwrap();
+    fs::write(&parts[1], &bytes[..bytes.len() - 10]).unwrap();
+    let other = run(
+        place,
+        &[
+            &fine[..],
+            &[
+                "--out",
+                "parts",
+                "--slack",
+                "2",
+                "--resume",
+                "--set",
+                "objectives.minimize=[\"satellites\",\"mean-pdop\"]",
+            ],
+        ]
+        .concat(),
+    );
+    assert_eq!(other.status, 2, "{}", other.stderr);
+    let merged = found(&["--out", "parts", "--resume"]);
+    assert!(
+        merged
+            .stderr
+            .contains("1.part: it is damaged; its designs are tried again"),
+        "{}",
+        merged.stderr
+    );
+    assert_eq!(merged.stdout, whole.stdout);
+    let [parts, whole] = ["parts", "whole"].map(|name| crate::common::contents(&place.join(name)));
+    assert_eq!(parts, whole);
+    // What is done is said and not begun again.
+    let late = found(&["--out", "parts", "--shard", "1/3"]);
+    assert!(
+        late.stderr.contains("has the result already"),
+        "{}",
+        late.stderr
+    );
+    let other = [
+        "--out",
+        "parts",
+        "--shard",
+        "1/3",
+        "--set",
+        "time.step-s=1800",
+    ];
+    let refused = run(place, &[&fine[..], &other].concat());
+    assert_eq!(refused.status, 2);
+    assert!(
+        refused
+            .stderr
+            .contains("holds something other than a search"),
+        "{}",
+        refused.stderr
+    );
+}

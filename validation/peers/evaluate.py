@@ -1,14 +1,16 @@
-"""The evaluation of one design in numpy and in numba, for comparison with navwalker.
+"""The evaluation of one design in numpy and in numba, for comparison with navwalker and its Python module.
 
     python3 evaluate.py [--navwalker BINARY]
 
 The paper's scenario: 143 points, 1440 samples, 182 LEO and 30 BeiDou-3 satellites, a mask of 7
 degrees on a sphere, one clock per system, exact CVaR. Both versions keep the sums over BeiDou
 between designs, as navwalker does. Metrics must agree to 1e-6, with each other and (with
---navwalker) with the program, before any time is printed. Times are on one thread.
+--navwalker) with the program, before any time is printed. So must those of the Python module where it is installed, which is
+timed too. Times are on one thread.
 """
 
 import argparse
+import importlib.util
 import json
 import math
 import subprocess
@@ -213,11 +215,18 @@ def main():
         command = [binary, "evaluate", "paper", "--design", DESIGN, "--format", "json"]
         printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         agree(json.loads(printed)["metrics"], first, "navwalker")
+    timed = [("numpy", evaluate_numpy, arguments, 3), ("numba", evaluate_numba, arguments, 20)]
+    if importlib.util.find_spec("navwalker"):
+        import navwalker
+
+        evaluate = navwalker.Scenario("paper", threads=1).evaluate
+        agree(evaluate(DESIGN).to_dict(), first, "navwalker in Python")
+        timed.append(("navwalker in Python", evaluate, (DESIGN,), 100))
     for key, value in first.items():
-        print(f"{key:14} {value:.12g}")
-    for name, function, repeats in (("numpy", evaluate_numpy, 3), ("numba", evaluate_numba, 20)):
-        least, median = fastest(lambda f=function: f(*arguments), repeats)
-        print(f"{name:14} fastest {least:.1f} ms, median {median:.1f} ms")
+        print(f"{key:20} {value:.12g}")
+    for name, function, given, repeats in timed:
+        least, median = fastest(lambda f=function, g=given: f(*g), repeats)
+        print(f"{name:20} fastest {least:.2f} ms, median {median:.2f} ms")
 
 
 if __name__ == "__main__":

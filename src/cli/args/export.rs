@@ -20,8 +20,9 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) chosen: ChosenArgs,
 
-    /// Refused: of evaluate, report and plot.
-    #[arg(long, hide = true, value_name = "NAME", value_delimiter = ',')]
+    /// Leave these satellites out: satellites (NW-P01-S03), planes (NW-P03) or shells (NW-A); the same as adding them to
+    /// `outages.satellites` of the scenario. The others are called as if all were there.
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) without: Vec<String>,
 
     /// Products to write, separated by commas; listed below.

@@ -1,6 +1,6 @@
 //! The arguments of `size`.
 
-use super::{OutputFormat, StudyArgs};
+use super::{OutputFormat, Shard, StudyArgs};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -17,6 +17,11 @@ pub(crate) struct SizeArgs {
     /// objective of the scenario that is not `satellites`.
     #[arg(long, value_name = "N")]
     pub(crate) slack: Option<usize>,
+
+    /// Try part I of N of the designs, every N-th of some thousands from the I-th, for a job array over one directory; the same
+    /// command with `--resume` in place of `--shard` makes the result when all are done.
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["verify", "resume", "force"])]
+    pub(crate) shard: Option<Shard>,
 
     /// Check the certificate in DIR instead: that it has every design of the grid with fewer satellites, and by full
     /// evaluations of a part of it and of the result. The exit status is 1 if something is wrong.

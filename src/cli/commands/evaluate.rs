@@ -11,7 +11,7 @@ mod series;
 mod single;
 mod spares;
 mod table;
-mod tiles;
+pub(in crate::cli) mod tiles;
 
 use crate::cli::args::EvaluateArgs;
 use crate::cli::constellations::GivenConstellation;
@@ -48,7 +48,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let given: Vec<Constellation> = given.collect();
     let series = SeriesDirectory::new(args, &study, &given)?;
     let evaluator = match &tiles {
-        Some(_) => tiles::evaluator(&study)?,
+        Some(_) => study.evaluator_in_tiles()?,
         None => study.evaluator()?,
     };
     let tiles = tiles

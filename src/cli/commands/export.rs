@@ -33,20 +33,34 @@ const TOLD_IDENTITIES: usize = 3;
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     check_choices(args)?;
-    constellations::refuse_without(&args.without, "export writes")?;
     files::require_replaceable(&args.out, args.force, &own(&args.out))?;
     let mut asked = args.study.clone();
     if let Some(date) = &args.creation_date {
         let key = format!("export.creation-date=\"{date}\"");
         asked.overrides.push(key);
     }
-    let (study, constellation) = study_and_constellation(&asked, &args.chosen)?;
+    let (mut study, constellation) = study_and_constellation(&asked, &args.chosen)?;
+    if let Some(key) = study.taking_out(&args.without)? {
+        asked.overrides.push(key);
+        study = match &args.chosen.run {
+            Some(directory) => Study::of_run(directory, &asked.overrides)?,
+            None => Study::load(&asked, &[])?,
+        };
+    }
     let inputs = study.inputs();
     let read = args.chosen.given.inputs();
     files::refuse_inputs(&args.out, inputs.iter().map(PathBuf::as_path).chain(read))?;
     let scenario = &study.scenario;
+    let products = products(args);
+    let uses_scenario = products.iter().any(|one| one.row().uses_scenario());
+    let has_outages = !scenario.outages.satellites.is_empty();
+    let evaluator = (uses_scenario || args.check || has_outages).then(|| study.evaluator());
+    let evaluator = evaluator.transpose()?;
+    let down = evaluator.as_ref().filter(|_| has_outages);
+    let down = down.map(|evaluator| constellation.places_down(evaluator.setup()));
     let subject = ExportSubject {
         constellation,
+        down: down.transpose()?.unwrap_or_default(),
         naming: Naming {
             prefix: scenario.export.name_prefix.clone(),
             first_catalog_number: scenario.export.first_catalog_number,
@@ -61,7 +75,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         creation: Epoch::from_utc(scenario.export.creation_date),
         provenance: Some(PROVENANCE.to_owned()),
     };
-    let (products, choices) = (products(args), choices(args));
+    let choices = choices(args);
     limits::check_export(export_size(&subject, &products, &choices))?;
     constellations::warn_of_files(&subject.constellation, subject.grid);
     let not_exported = || format!("cannot export to {}", args.out.display());
@@ -75,9 +89,6 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         progress.one_more();
         File::create(path)
     };
-    let uses_scenario = products.iter().any(|one| one.row().uses_scenario());
-    let evaluator = (uses_scenario || args.check).then(|| study.evaluator());
-    let evaluator = evaluator.transpose()?;
     let shown = evaluator.as_ref().filter(|_| uses_scenario);
     let shown = shown.map(|evaluator| ShownScenario {
         evaluator,

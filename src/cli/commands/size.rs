@@ -1,7 +1,9 @@
 //! `navwalker size`.
 
 mod directory;
+mod parts;
 mod robust;
+mod shard;
 mod verify;
 
 use crate::cli::args::{OutputFormat, SizeArgs, quoted};
@@ -15,6 +17,7 @@ use crate::run::size::{Refinement, SizeResult, refinements, size_csv};
 use crate::scenario::Scenario;
 use crate::search::size::{ClosestDesign, SizeProblem, SizeSearch};
 use crate::search::{DesignProblem, Quantity};
+use crate::units::counted;
 use anyhow::{Result, bail};
 use directory::SizeDirectory;
 use std::path::{Path, PathBuf};
@@ -45,13 +48,20 @@ pub(crate) fn run(args: &SizeArgs) -> Result<Status> {
     let problem = SizeProblem::new(&problem);
     check_size(&problem)?;
     warn_of_rules(&problem);
-    let mut directory = SizeDirectory::open(out.clone(), &study, args.force, args.resume)?;
-    let search =
-        directory.resume(|search| search.suits(&problem, args.slack.unwrap_or(0), objective))?;
-    if args.resume && search.is_none() {
-        output::hint("no checkpoint to resume from; starting over");
+    let slack = args.slack.unwrap_or(0);
+    if let Some(shard) = args.shard {
+        let further = shard::Further { slack, objective };
+        return shard::run(&problem, &study, &out, shard, &further);
     }
-    let start = || SizeSearch::start(&problem, args.slack.unwrap_or(0), objective);
+    let mut directory = SizeDirectory::open(out.clone(), &study, args.force, args.resume)?;
+    let search = directory.resume(|search| search.suits(&problem, slack, objective))?;
+    if args.resume && search.is_none() {
+        output::hint(&match directory.parts().paths().len() {
+            0 => "no checkpoint to resume from; starting over".to_owned(),
+            parts => format!("{} of shards to take up", counted(parts, "part")),
+        });
+    }
+    let start = || SizeSearch::start(&problem, slack, objective);
     let mut search = search.unwrap_or_else(start);
     let mut closest = None;
     if !searched(&problem, &mut search, &mut directory)? {
@@ -108,8 +118,10 @@ fn searched(
     let stoppable = Stoppable::begin();
     let mut saved = Instant::now();
     while !search.is_done() && !stoppable.is_asked_to_stop() {
-        let witnesses = search.step(problem)?;
-        directory.append(&witnesses)?;
+        if !taken_up(problem, search, directory)? {
+            let witnesses = search.step(problem)?;
+            directory.append(&witnesses)?;
+        }
         if saved.elapsed() > CHECKPOINT_EVERY {
             directory.save(search)?;
             saved = Instant::now();
@@ -120,6 +132,32 @@ fn searched(
     directory.save(search)?;
     let is_asked = stoppable.end();
     Ok(is_asked && !search.is_done())
+}
+
+/// Takes up the part that a shard has left for the next step; returns whether there is one.
+fn taken_up(
+    problem: &SizeProblem<'_>,
+    search: &mut SizeSearch,
+    directory: &mut SizeDirectory,
+) -> Result<bool> {
+    let Some(number) = search.next_part(problem) else {
+        return Ok(false);
+    };
+    let parts = directory.parts();
+    let Some((part, rows)) = parts.get(number) else {
+        return Ok(false);
+    };
+    if !search.absorb(problem, part)? {
+        parts.warn(number, "it is of another --slack or further objective");
+        return Ok(false);
+    }
+    // What the part has beyond the end of the search is left out.
+    let last = search.levels().last().map_or(0, |level| level.satellites);
+    let satellites = |line: &str| line.split(',').next().and_then(|text| text.parse().ok());
+    let is_within = |line: &&str| satellites(line).is_some_and(|n: usize| n <= last);
+    let rows = rows.split_inclusive('\n').filter(is_within);
+    directory.append_rows(&rows.collect::<String>())?;
+    Ok(true)
 }
 
 /// The closest rejected designs: of each number of satellites if nothing keeps the constraints, otherwise of the next

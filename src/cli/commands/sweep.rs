@@ -11,8 +11,8 @@ use crate::cli::sweep_store::{ChunkState, SweepStore, warn_of_damage};
 use crate::cli::{Status, coincidence, limits, output};
 use crate::evaluate::Evaluator;
 use crate::run::sweep::{
-    SweepDesigns, SweepEvaluator, SweepPlan, SweepSource, SweptDesign, TableFormat, sweep_time_s,
-    write_chunk,
+    SampleShape, SweepDesigns, SweepEvaluator, SweepPlan, SweepSource, SweptDesign, TableFormat,
+    sweep_time_s, write_chunk,
 };
 use anyhow::{Result, bail};
 use rayon::prelude::*;
@@ -48,7 +48,7 @@ fn sweep(args: &SweepArgs) -> Result<Status> {
         Some(list) => SweepDesigns::List(list),
         None => SweepDesigns::of_space(&problem),
     };
-    let samples = evaluator.setup().sample_count();
+    let samples = SampleShape::from(evaluator.setup());
     let points = designs.points()? as f64;
     let time_s = sweep_time_s(points, samples, designs.mean_satellites()?);
     limits::check_sweep(points, time_s)?;

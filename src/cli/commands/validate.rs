@@ -74,7 +74,7 @@ fn targets(typed: &[String]) -> Result<Vec<Against>> {
 }
 
 pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
-    refuse_without(&args.without, "validate compares")?;
+    refuse_without(&args.without)?;
     let targets = targets(&args.against)?;
     let run = args.chosen.run.as_deref().filter(|_| args.report);
     let out = args.out.clone().or(run.map(|run| run.join("validation")));

@@ -98,6 +98,13 @@ pub(crate) fn lock(path: &Path) -> Result<File, TryLockError> {
     Ok(file)
 }
 
+/// A lock that several processes may have, which keeps the directory from being replaced meanwhile.
+pub(crate) fn shared_lock(path: &Path) -> Option<File> {
+    let file = File::open(path).ok()?;
+    file.lock_shared().ok()?;
+    Some(file)
+}
+
 /// Removes what a killed process left next to `place`, as far as possible.
 fn remove_stale(parent: &Path, place: &Path) {
     let prefix = prefix(place);

@@ -110,11 +110,12 @@ impl ExportSource<'_> {
         };
         let mut items = Vec::new();
         let shells = self.ephemeris.shells();
-        for (n, span) in shells.iter().enumerate() {
+        for span in shells {
             let prefix = &self.subject.naming.prefix;
-            let name = match shells.len() {
-                1 => prefix.clone(),
-                _ => format!("{prefix}-{}", shell_letters(n)),
+            let slot = self.members[span.first].slot;
+            let name = match slot.and_then(|slot| slot.shell) {
+                None => prefix.clone(),
+                Some(shell) => format!("{prefix}-{}", shell_letters(shell)),
             };
             let walker = theory.and_then(|theory| WalkerShell::new(name, &span.shell, theory));
             match walker {

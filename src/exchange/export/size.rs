@@ -34,7 +34,7 @@ pub struct ExportSize {
 /// region alone, megabytes at most for a usual one, is not included.
 #[must_use]
 pub fn export_size(subject: &ExportSubject, products: &[Product], choices: &Choices) -> ExportSize {
-    let of_design = subject.constellation.satellite_count() as u64;
+    let of_design = (subject.constellation.satellite_count() - subject.down.len()) as u64;
     let instants = subject.grid.len() as u64;
     let span_s = (instants - 1) as f64 * subject.grid.step_s();
     let days = (span_s / DAY_S).ceil() as u64;

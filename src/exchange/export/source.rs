@@ -42,14 +42,17 @@ impl<'a> ExportSource<'a> {
         let members = constellation.members(grid.epoch());
         let objects = subject.naming.objects(&members, grid.epoch());
         let objects = objects.map_err(crate::formats::WriteError::from)?;
-        let mut ephemeris = constellation.continuous_ephemeris(grid, subject.model)?;
+        let stems = subject.left(stems(&objects));
+        let (members, objects) = (subject.left(members), subject.left(objects));
+        let ephemeris = constellation.continuous_ephemeris(grid, subject.model)?;
+        let mut ephemeris = ephemeris.without(&subject.down);
         for (satellite, object) in ephemeris.satellites_mut().iter_mut().zip(&objects) {
             satellite.name.clone_from(&object.name);
         }
         let mut source = Self {
             subject,
             choices,
-            stems: stems(&objects),
+            stems,
             changed: changed(&members, &objects),
             members,
             objects,
@@ -168,6 +171,9 @@ impl<'a> ExportSource<'a> {
     fn description(&self) -> Vec<String> {
         let constellation = &self.subject.constellation;
         let mut lines = Vec::new();
+        if let Some(down) = self.subject.told_down() {
+            lines.push(format!("Out of service, and not here: {down}"));
+        }
         match constellation.only_design() {
             Some(design) if design.only_shell().is_some() => {
                 lines.push(format!("Design: {design}"))
@@ -257,6 +263,7 @@ impl<'a> ExportSource<'a> {
             provenance: provenance.clone(),
             scenario: study.clone(),
             design: constellation.design.as_ref().map(Design::to_string),
+            out_of_service: self.subject.down.len(),
             constellation: (!is_design).then(|| constellation.name.clone()),
             converted: self.converted(),
             changed_identities: self.changed.clone(),
@@ -266,6 +273,22 @@ impl<'a> ExportSource<'a> {
             conventions: Conventions::new(self.distance_from_itrf()),
             files,
         }
+    }
+}
+
+impl ExportSubject {
+    /// What there is one of for each satellite, without those that are down.
+    fn left<T>(&self, of_all: Vec<T>) -> Vec<T> {
+        let numbered = of_all.into_iter().enumerate();
+        let left = numbered.filter(|(place, _)| !self.down.contains(place));
+        left.map(|(_, one)| one).collect()
+    }
+
+    /// How many satellites are down, in words, if any are.
+    fn told_down(&self) -> Option<String> {
+        let of = self.constellation.satellite_count();
+        let down = self.down.len();
+        (down > 0).then(|| format!("{} of {of}", counted(down, "satellite")))
     }
 }
 

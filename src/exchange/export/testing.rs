@@ -30,6 +30,7 @@ pub(crate) fn subject(design: Design, grid: TimeGrid) -> ExportSubject {
 pub(crate) fn subject_of(constellation: Constellation, grid: TimeGrid) -> ExportSubject {
     ExportSubject {
         constellation,
+        down: Vec::new(),
         naming: Naming::default(),
         model: Model::J2,
         grid,

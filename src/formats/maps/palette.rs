@@ -3,7 +3,7 @@
 
 use super::scene::group_colour;
 use crate::constellation::{Slot, shell_letters};
-use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, ShellSpan};
 use crate::orbit::kepler;
 use std::f64::consts::TAU;
 
@@ -17,14 +17,15 @@ pub(crate) struct Palette {
 
 impl Palette {
     pub(crate) fn of(ephemeris: &Ephemeris) -> Self {
-        let shells = ephemeris.shells();
-        let has_others = !ephemeris.outside_shells().is_empty();
+        // By slots: a shell without one of its satellites is still a group.
+        let slots = || ephemeris.satellites().iter().map(|one| one.slot);
+        let has_others = slots().any(|slot| slot.is_none());
+        let counted = |of: fn(Slot) -> usize| slots().flatten().map(|slot| of(slot) + 1).max();
+        let shells = counted(|slot| slot.shell.unwrap_or(0)).unwrap_or(0);
+        let planes = counted(|slot| slot.plane);
         Self {
-            planes: match shells {
-                [only] if !has_others => Some(only.shell.planes()),
-                _ => None,
-            },
-            shells: shells.len(),
+            planes: planes.filter(|_| shells == 1 && !has_others),
+            shells,
             has_others,
         }
     }
@@ -84,8 +85,13 @@ pub(crate) fn period_s(
     ephemeris: &Ephemeris,
     satellite: &EphemerisSatellite,
 ) -> Result<Option<f64>, EphemerisError> {
+    let is_of = |span: &&ShellSpan, slot: Slot| {
+        let first = ephemeris.satellites()[span.first].slot;
+        first.is_some_and(|first| first.shell == slot.shell)
+    };
+    let shells = || ephemeris.shells().iter();
     if let Some(slot) = satellite.slot
-        && let Some(span) = ephemeris.shells().get(slot.shell.unwrap_or(0))
+        && let Some(span) = shells().find(|span| is_of(span, slot))
     {
         let elements = span.shell.elements(slot);
         return Ok(Some(TAU / elements.kepler_mean_motion_rad_s()));
@@ -112,6 +118,28 @@ mod tests {
         let names: Vec<String> = palette.groups().into_iter().map(|(name, _)| name).collect();
         assert_eq!(names, ["shellA", "shellB", "others"]);
         assert_eq!(palette.colour(None), palette.groups()[2].1);
+    }
+
+    /// What is lost leaves the groups and the periods of the others as they are.
+    #[test]
+    fn a_shell_without_a_satellite_is_still_a_group() {
+        let of = |design: &str, down: usize| {
+            let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+            let grid = TimeGrid::new(epoch, 600.0, 60.0).unwrap();
+            let all = Ephemeris::of_design(&design.parse().unwrap(), Model::J2, grid);
+            all.unwrap().without(&[down])
+        };
+        let one = Palette::of(&of("delta:55:6/3/1@925", 3));
+        assert_eq!(one.groups(), palette("delta:55:6/3/1@925").groups());
+        let design = "delta:53:6/3/1@1000+star:90:4/2/1@20000";
+        let left = of(design, 0);
+        assert_eq!(Palette::of(&left).groups(), palette(design).groups());
+        let minutes = |place: usize| {
+            let satellite = &left.satellites()[place];
+            period_s(&left, satellite).unwrap().unwrap() / 60.0
+        };
+        assert!((100.0..110.0).contains(&minutes(0)), "{}", minutes(0));
+        assert!((700.0..720.0).contains(&minutes(8)), "{}", minutes(8));
     }
 
     #[test]

@@ -2,11 +2,12 @@
 //! are: a design is left at the first moment when its samples prove that it violates a constraint by more than the best
 //! so far violate all of them.
 
+use super::level::{LevelSummary, NAMED};
 use super::order::SampleOrder;
 use super::problem::SizeProblem;
 use super::rules::RuleSet;
 use super::trial::Trial;
-use super::walk::{BATCH, LevelSummary, NAMED, SizeSearch};
+use super::walk::{BATCH, SizeSearch};
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
 use crate::optimize::OptimizeError;
@@ -38,7 +39,7 @@ impl SizeProblem<'_> {
         level: &LevelSummary,
         is_stopped: &dyn Fn() -> bool,
     ) -> Result<Option<Vec<ClosestDesign>>, OptimizeError> {
-        let order = search.order();
+        let order = search.order(self);
         let mut bar = self.violation_of_named(level);
         let mut closest: Vec<ClosestDesign> = Vec::new();
         let mut genomes = self.genomes(level.satellites);

@@ -2,6 +2,7 @@
 
 use super::counts::{CountGrid, ShellCounts};
 use super::order::{BadTile, SampleOrder};
+use super::parts::PART_POINTS;
 use super::rules::RuleSet;
 use super::trial::{Rejection, Trial};
 use super::witness::{PointWitness, RejectionBasis, Witness};
@@ -24,6 +25,8 @@ pub struct SizeProblem<'a> {
     first_variables: Vec<usize>,
     /// `None` where the plain path evaluates all designs, in full.
     rules: Option<RuleSet>,
+    /// Points of the grid in a part of the walk.
+    pub(super) part_points: u64,
 }
 
 /// What became of a design.
@@ -68,7 +71,15 @@ impl<'a> SizeProblem<'a> {
             counts: CountGrid::new(designs),
             first_variables: designs.shells.iter().map(first).collect(),
             rules,
+            part_points: PART_POINTS,
         }
+    }
+
+    /// The same in parts of another size.
+    #[cfg(test)]
+    pub(super) fn in_parts_of(mut self, points: u64) -> Self {
+        self.part_points = points;
+        self
     }
 
     /// The search.

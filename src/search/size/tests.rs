@@ -230,7 +230,7 @@ fn every_rule_saves_samples() {
         assert!(size.without_rule().is_empty(), "{constraint}");
         let by_samples = search
             .savings()
-            .iter()
+            .into_iter()
             .filter(|one| one.basis == RejectionBasis::Samples && one.tiles_saved > 0);
         assert_eq!(
             by_samples.count(),
@@ -280,6 +280,84 @@ fn a_resumed_search_equals_an_unbroken_one_on_any_threads() {
         assert_eq!(search, unbroken);
         assert_eq!(witnesses, expected);
     }
+}
+
+/// Parts of any size tried alone, in any order, and written and read, make up the search that tries everything; with
+/// whatever it finds beyond its end left out, and the same on any number of threads.
+#[test]
+fn parts_make_up_the_search() {
+    let evaluator = Evaluator::new(setup(20, 48, true, 2.0)).unwrap();
+    for (constraint, slack) in [
+        ("availability >= 0.9", 0),
+        ("availability >= 0.9", 3),
+        ("max-pdop <= 0.1", 0),
+    ] {
+        let goals = goals(&[constraint, "max-pdop <= 9"]);
+        let problem = DesignProblem::new(&evaluator, space(true), goals).unwrap();
+        for points in [1, 7, 40, 8192] {
+            let size = SizeProblem::new(&problem).in_parts_of(points);
+            let (whole, expected) = found(&size, slack);
+            let parts = size.parts().unwrap();
+            let tried = |number: u64| {
+                let objective = Some(Quantity::MaxPdop);
+                let search = SizeSearch::of_part(&size, slack, objective, number).unwrap();
+                let mut search = search.unwrap();
+                let mut witnesses = Vec::new();
+                while !search.is_done() {
+                    witnesses.extend(search.step(&size).unwrap());
+                }
+                (serde_json::to_string(&search.kept()).unwrap(), witnesses)
+            };
+            let mut backwards: Vec<_> = (0..parts).rev().map(tried).collect();
+            let mut search = SizeSearch::start(&size, slack, Some(Quantity::MaxPdop));
+            let mut witnesses = Vec::new();
+            while !search.is_done() {
+                let number = search.next_part(&size).unwrap();
+                assert_eq!(number, parts - backwards.len() as u64);
+                let (text, found) = backwards.pop().unwrap();
+                let first = size.satellites_of_part(number).unwrap().unwrap();
+                let last = search.fewest().map(|n| size.last_reached(n, slack));
+                assert!(last.is_none_or(|last| first <= last));
+                let part = serde_json::from_str(&text).unwrap();
+                assert!(search.absorb(&size, part).unwrap());
+                let last = search.levels().last().map_or(0, |level| level.satellites);
+                witnesses.extend(found.into_iter().filter(|(of, _)| *of <= last));
+            }
+            assert_eq!(search.kept(), whole.kept(), "{constraint} {points}");
+            assert_eq!(witnesses, expected, "{constraint} {points}");
+        }
+    }
+}
+
+/// A part is taken up only where it belongs, and only into the search that it is a part of.
+#[test]
+fn a_part_of_another_search_is_not_taken_up() {
+    let evaluator = Evaluator::new(setup(5, 12, true, 2.0)).unwrap();
+    let problem =
+        DesignProblem::new(&evaluator, space(false), goals(&["availability >= 0.9"])).unwrap();
+    let size = SizeProblem::new(&problem).in_parts_of(10);
+    let part = |number: u64, slack: usize| {
+        let search = SizeSearch::of_part(&size, slack, None, number).unwrap();
+        let mut search = search.unwrap();
+        while !search.is_done() {
+            search.step(&size).unwrap();
+        }
+        search
+    };
+    let mut search = SizeSearch::start(&size, 0, None);
+    for other in [part(1, 0), part(0, 2), SizeSearch::start(&size, 0, None)] {
+        assert!(!search.absorb(&size, other).unwrap());
+    }
+    let begun = SizeSearch::of_part(&size, 0, None, 0).unwrap().unwrap();
+    assert!(!search.absorb(&size, begun).unwrap());
+    assert!(search.absorb(&size, part(0, 0)).unwrap());
+    assert!(!search.absorb(&size, part(0, 0)).unwrap());
+    let behind = size.parts().unwrap();
+    assert!(
+        SizeSearch::of_part(&size, 0, None, behind)
+            .unwrap()
+            .is_none()
+    );
 }
 
 /// The number of designs is known before the search.

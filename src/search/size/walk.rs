@@ -1,8 +1,10 @@
 //! The walk through the grid, its own checkpoint.
 
+use super::level::{KeptDesign, LevelSummary, RuleSaving};
 use super::order::{Hardness, SampleOrder};
+use super::parts::Cursor;
 use super::problem::{SizeProblem, Tried, TriedVerdict};
-use super::witness::{RejectionBasis, Witness};
+use super::witness::Witness;
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
 use crate::optimize::OptimizeError;
@@ -22,122 +24,20 @@ const BATCH_TILES: usize = 1 << 26;
 /// One design of so many is evaluated at all samples, so that something is learnt about each.
 const SCOUT_EVERY: u64 = 1024;
 
-/// Rejected designs that are named for each number of satellites, and kept ones for a number above the fewest.
-pub(super) const NAMED: usize = 3;
-
-/// A design that keeps the constraints.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct KeptDesign {
-    /// Its notation.
-    pub design: String,
-    /// Its planes.
-    pub planes: usize,
-    /// Its metrics.
-    pub metrics: Metrics,
-    /// The least margin of its constraints: the distance from the bound, relative to it (absolute for bounds below 1).
-    pub margin: f64,
-    /// The value of the further objective, if there is one.
-    pub objective: Option<f64>,
-}
-
-/// The designs of one number of satellites.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct LevelSummary {
-    /// Satellites, with those that are fixed.
-    pub satellites: usize,
-    /// Designs of the grid.
-    pub designs: u64,
-    /// Of those, the ones that keep the constraints.
-    pub kept: u64,
-    /// Those that keep the constraints, the best first: with the fewest satellites all of them, otherwise some.
-    pub best: Vec<KeptDesign>,
-    /// The one of them with the best value of the further objective.
-    pub best_by_objective: Option<KeptDesign>,
-    /// The rejected designs that came closest, the closest first.
-    pub witnesses: Vec<Witness>,
-}
-
-impl LevelSummary {
-    fn new(satellites: usize) -> Self {
-        Self {
-            satellites,
-            designs: 0,
-            kept: 0,
-            best: Vec::new(),
-            best_by_objective: None,
-            witnesses: Vec::new(),
-        }
-    }
-
-    fn reject(&mut self, witness: &Witness) {
-        let place = self
-            .witnesses
-            .iter()
-            .position(|other| witness.is_closer_than(other));
-        let place = place.unwrap_or(self.witnesses.len());
-        if place < NAMED {
-            self.witnesses.insert(place, witness.clone());
-            self.witnesses.truncate(NAMED);
-        }
-    }
-
-    fn keep(&mut self, one: KeptDesign, objective: Option<Quantity>, are_all_named: bool) {
-        self.kept += 1;
-        if let (Some(value), Some(quantity)) = (one.objective, objective) {
-            let value = quantity.minimised(value);
-            let best = self.best_by_objective.as_ref();
-            let best = best.and_then(|best| best.objective);
-            if best.is_none_or(|best| value < quantity.minimised(best)) {
-                self.best_by_objective = Some(one.clone());
-            }
-        }
-        let is_better = |other: &KeptDesign| {
-            let by_margin = one.margin.total_cmp(&other.margin);
-            by_margin.then(other.planes.cmp(&one.planes)).is_gt()
-        };
-        let place = self.best.partition_point(|other| !is_better(other));
-        self.best.insert(place, one);
-        if !are_all_named {
-            self.best.truncate(NAMED);
-        }
-    }
-}
-
-/// What one rule rejected.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RuleSaving {
-    /// The constraint.
-    pub constraint: String,
-    /// How it rejected.
-    pub basis: RejectionBasis,
-    /// Designs that it rejected.
-    pub designs: u64,
-    /// Samples of these designs that were not evaluated, in tiles.
-    pub tiles_saved: u64,
-}
-
-/// Where the walk is: a number of satellites, the counts of the shells, and a point of that part of the grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-struct Cursor {
-    level: usize,
-    counts: usize,
-    point: u64,
-}
-
-/// A search for the fewest satellites.
+/// A search for the fewest satellites, or a part of one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SizeSearch {
-    slack: usize,
-    objective: Option<String>,
-    cursor: Cursor,
-    tried: u64,
-    begun: u64,
-    finished: u64,
-    tiles: u64,
-    hardness: Option<Hardness>,
-    savings: Vec<RuleSaving>,
-    levels: Vec<LevelSummary>,
-    is_done: bool,
+    pub(super) slack: usize,
+    pub(super) objective: Option<String>,
+    pub(super) cursor: Cursor,
+    /// The part that it ends with, if it is only that.
+    pub(super) only: Option<u64>,
+    /// Designs of the part of the walk that it is in.
+    pub(super) tried_in_part: u64,
+    /// Learnt in the part of the walk that it is in.
+    pub(super) hardness: Option<Hardness>,
+    pub(super) levels: Vec<LevelSummary>,
+    pub(super) is_done: bool,
 }
 
 /// A design of the next batch.
@@ -156,12 +56,9 @@ impl SizeSearch {
             slack,
             objective: objective.map(|quantity| quantity.to_string()),
             cursor: Cursor::default(),
-            tried: 0,
-            begun: 0,
-            finished: 0,
-            tiles: 0,
+            only: None,
+            tried_in_part: 0,
             hardness: problem.sample_tiles().map(Hardness::new),
-            savings: Vec::new(),
             levels: Vec::new(),
             is_done: false,
         }
@@ -177,8 +74,9 @@ impl SizeSearch {
     ) -> bool {
         let of_samples = match (&self.hardness, problem.sample_tiles()) {
             (Some(hardness), Some(shape)) => hardness.suits(shape),
+            (None, Some(_)) => self.is_done,
             (None, None) => true,
-            _ => false,
+            (Some(_), None) => false,
         };
         let objective = objective.map(|quantity| quantity.to_string());
         of_samples && self.slack == slack && self.objective == objective
@@ -201,7 +99,7 @@ impl SizeSearch {
     ) -> Result<Vec<(usize, Witness)>, OptimizeError> {
         let totals = problem.totals();
         let (batch, next) = self.batch(problem, &totals)?;
-        let order = self.order();
+        let order = self.order(problem);
         let tried: Vec<Tried> = batch
             .par_iter()
             .map(|one| problem.tried(&one.genome, order.as_ref(), one.is_scout))
@@ -220,9 +118,8 @@ impl SizeSearch {
                 witnesses.push((one.satellites, witness));
             }
         }
-        self.cursor = next;
-        let next = totals.get(self.cursor.level);
-        self.is_done = next.is_none_or(|satellites| self.is_beyond(*satellites));
+        self.tried_in_part += batch.len() as u64;
+        self.go_on_at(problem, next, &totals);
         Ok(witnesses)
     }
 
@@ -238,17 +135,18 @@ impl SizeSearch {
         let most = (BATCH_TILES / tiles.max(1)).clamp(1, BATCH);
         let mut batch = Vec::new();
         let mut at = self.cursor;
+        let end = problem.end_of_part(at);
         while let Some(&satellites) = totals.get(at.level) {
             let all = problem.with_total(satellites);
             while let Some(counts) = all.get(at.counts) {
                 let part = problem.part(counts);
                 let points = part.count()?;
                 while at.point < points {
-                    if batch.len() == most {
+                    if batch.len() == most || at.walked == end {
                         return Ok((batch, at));
                     }
                     if let Some(genome) = problem.genome(&part, at.point)? {
-                        let number = self.tried + batch.len() as u64;
+                        let number = self.tried_in_part + batch.len() as u64;
                         batch.push(Candidate {
                             satellites,
                             genome,
@@ -256,18 +154,12 @@ impl SizeSearch {
                         });
                     }
                     at.point += 1;
+                    at.walked += 1;
                 }
-                at = Cursor {
-                    counts: at.counts + 1,
-                    point: 0,
-                    ..at
-                };
+                at = at.with_next_counts();
             }
-            at = Cursor {
-                level: at.level + 1,
-                ..Cursor::default()
-            };
-            if batch.len() >= SMALL_BATCH.min(most) {
+            at = at.with_next_level();
+            if batch.len() >= SMALL_BATCH.min(most) || at.walked == end {
                 break;
             }
         }
@@ -276,7 +168,7 @@ impl SizeSearch {
 
     /// Whether the search ends before a number of satellites: it is beyond the slack, and not the next one after the
     /// fewest.
-    fn is_beyond(&self, satellites: usize) -> bool {
+    pub(super) fn is_beyond(&self, satellites: usize) -> bool {
         let Some(fewest) = self.fewest() else {
             return false;
         };
@@ -305,13 +197,13 @@ impl SizeSearch {
         let all_tiles = problem
             .sample_tiles()
             .map_or(1, |shape| shape.tiles * shape.instants) as u64;
-        self.tried += 1;
-        self.begun += u64::from(tried.tiles > 0 || tried.is_evaluated);
-        self.finished += u64::from(tried.is_evaluated);
-        self.tiles += tried.tiles as u64 + if tried.is_evaluated { all_tiles } else { 0 };
+        let evaluated = tried.tiles as u64 + if tried.is_evaluated { all_tiles } else { 0 };
         let objective = self.objective();
         let level = self.levels.last_mut()?;
         level.designs += 1;
+        level.begun += u64::from(tried.tiles > 0 || tried.is_evaluated);
+        level.finished += u64::from(tried.is_evaluated);
+        level.tiles += evaluated;
         match tried.outcome {
             TriedVerdict::Kept(design, metrics) => {
                 let one = kept(problem, &design, *metrics, objective);
@@ -321,28 +213,11 @@ impl SizeSearch {
             }
             TriedVerdict::Rejected(witness) => {
                 level.reject(&witness);
-                let evaluated = tried.tiles as u64 + if tried.is_evaluated { all_tiles } else { 0 };
-                self.save(&witness, all_tiles.saturating_sub(evaluated));
+                let saving = RuleSaving::of(&witness, all_tiles.saturating_sub(evaluated));
+                saving.add_to(&mut level.savings);
                 Some(*witness)
             }
         }
-    }
-
-    fn save(&mut self, witness: &Witness, tiles_saved: u64) {
-        let same = |one: &&mut RuleSaving| {
-            one.basis == witness.basis && one.constraint == witness.constraint
-        };
-        if let Some(one) = self.savings.iter_mut().find(same) {
-            one.designs += 1;
-            one.tiles_saved += tiles_saved;
-            return;
-        }
-        self.savings.push(RuleSaving {
-            constraint: witness.constraint.clone(),
-            basis: witness.basis,
-            designs: 1,
-            tiles_saved,
-        });
     }
 
     /// The fewest satellites that keep the constraints, once a design does.
@@ -360,32 +235,38 @@ impl SizeSearch {
 
     /// What each rule rejected.
     #[must_use]
-    pub fn savings(&self) -> &[RuleSaving] {
-        &self.savings
+    pub fn savings(&self) -> Vec<RuleSaving> {
+        let mut all = Vec::new();
+        let of_levels = self.levels.iter().flat_map(|level| &level.savings);
+        for saving in of_levels {
+            saving.clone().add_to(&mut all);
+        }
+        all
     }
 
     /// Designs of the grid so far.
     #[must_use]
     pub fn tried(&self) -> u64 {
-        self.tried
+        self.levels.iter().map(|level| level.designs).sum()
     }
 
     /// Designs of which at least one sample was evaluated.
     #[must_use]
     pub fn begun(&self) -> u64 {
-        self.begun
+        self.levels.iter().map(|level| level.begun).sum()
     }
 
     /// Designs that were evaluated in full.
     #[must_use]
     pub fn finished(&self) -> u64 {
-        self.finished
+        self.levels.iter().map(|level| level.finished).sum()
     }
 
     /// Samples that were evaluated, as a share of those of all designs so far.
     #[must_use]
     pub fn samples_share(&self, problem: &SizeProblem<'_>) -> f64 {
-        problem.samples_share(1) * self.tiles as f64 / self.tried.max(1) as f64
+        let tiles: u64 = self.levels.iter().map(|level| level.tiles).sum();
+        problem.samples_share(1) * tiles as f64 / self.tried().max(1) as f64
     }
 
     /// The number of satellites that the next step begins with, and how many points of the grid are left of it and
@@ -401,9 +282,11 @@ impl SizeSearch {
         Some((satellites, total - before - self.cursor.point, total))
     }
 
-    /// The order of the samples that was learnt so far.
-    pub(super) fn order(&self) -> Option<SampleOrder> {
-        self.hardness.as_ref().map(Hardness::order)
+    /// The order of the samples that was learnt so far; that of a search before its first step where it is not kept.
+    pub(super) fn order(&self, problem: &SizeProblem<'_>) -> Option<SampleOrder> {
+        let learnt = self.hardness.as_ref().map(Hardness::order);
+        let unlearnt = || Some(Hardness::new(problem.sample_tiles()?).order());
+        learnt.or_else(unlearnt)
     }
 
     /// The further objective.

@@ -11,11 +11,11 @@ use crate::evaluate::{Evaluator, Metrics, Setup, ViewHistograms};
 use crate::exchange::constellation::Constellation;
 use crate::run::VERSION;
 use crate::run::checkpoint::hex_sha256;
-use crate::run::sweep::sweep_time_s;
+use crate::run::sweep::{SampleShape, sweep_time_s};
 use crate::run::tile::{TileFile, TilePlan, TileSet, TileWriter};
 use anyhow::{Context, Result, anyhow, bail};
 use std::fs::File;
-use std::io::{self, BufWriter};
+use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
@@ -35,31 +35,19 @@ pub(super) fn evaluate(
     files::refuse_inputs(out, inputs.chain(args.constellations.inputs()))?;
     let setup = study.setup_in_tiles()?;
     let instants = setup.grid.len();
-    if tile.parts > instants {
-        bail!("--tile {tile}: there are {instants} instants, and a tile has at least one");
-    }
+    require_tiles(instants, tile.parts).map_err(|error| anyhow!("--tile {tile}: {error}"))?;
     say_of_tiles(&setup, &size(&setup, &one.constellation, tile));
     say_of_setup(&setup);
     let evaluator = Evaluator::new(setup)?;
-    let setup = evaluator.setup();
-    let plan = TilePlan {
-        tiles: tile.parts,
-        ..plan(study, &evaluator, described(given)?)?
-    };
-    let instants = plan.instants_of(tile.part);
-    let leo = constellations::propagate(&one.constellation, setup)?;
-    evaluator.require_divisible(&leo)?;
-    let none = Ephemeris::new(setup.grid, Vec::new());
-    let parts = [&leo, &none];
-    files::StagedFile::new(out)?.commit_written(|file| {
-        let mut writer = TileWriter::new(BufWriter::new(file), &plan, tile.part)?;
-        let mut counts = Vec::new();
-        for ephemeris in parts.into_iter().take(plan.parts()) {
-            let found = evaluator.evaluate_tile(ephemeris, instants.clone(), &mut writer);
-            counts.push(found.map_err(io::Error::other)?);
-        }
-        writer.finish(&counts)
-    })?;
+    let described = described(given)?;
+    let work = TileWork::new(
+        study,
+        &evaluator,
+        (&one.constellation, described),
+        tile.parts,
+    )?;
+    files::StagedFile::new(out)?
+        .commit_written(|file| work.write(tile.part, BufWriter::new(file)))?;
     output::hint(&format!(
         "{} written\nwhen all tiles are: the same command with --merge FILE... in place of --tile and --out",
         quoted(&out.display().to_string())
@@ -67,21 +55,111 @@ pub(super) fn evaluate(
     Ok(Status::Done)
 }
 
-/// The evaluator of tiles, however many samples they have together.
-pub(super) fn evaluator(study: &Study) -> Result<Evaluator> {
-    let setup = study.setup_in_tiles()?;
-    say_of_setup(&setup);
-    Ok(Evaluator::new(setup)?)
+/// An evaluation in so many tiles.
+struct TileWork<'a> {
+    evaluator: &'a Evaluator,
+    plan: TilePlan,
+    leo: Ephemeris,
+}
+
+impl<'a> TileWork<'a> {
+    /// Of a constellation, and what it is made of.
+    fn new(
+        study: &Study,
+        evaluator: &'a Evaluator,
+        (constellation, described): (&Constellation, String),
+        tiles: usize,
+    ) -> Result<Self> {
+        let plan = TilePlan {
+            tiles,
+            ..plan(study, evaluator, described)?
+        };
+        let leo = constellations::propagate(constellation, evaluator.setup())?;
+        evaluator.require_divisible(&leo)?;
+        Ok(Self {
+            evaluator,
+            plan,
+            leo,
+        })
+    }
+
+    /// Evaluates a tile, by its number from 1, and writes its file.
+    fn write(&self, tile: usize, output: impl Write) -> io::Result<()> {
+        let none = Ephemeris::new(self.evaluator.setup().grid, Vec::new());
+        let mut writer = TileWriter::new(output, &self.plan, tile)?;
+        let mut counts = Vec::new();
+        for ephemeris in [&self.leo, &none].into_iter().take(self.plan.parts()) {
+            let instants = self.plan.instants_of(tile);
+            let found = self
+                .evaluator
+                .evaluate_tile(ephemeris, instants, &mut writer);
+            counts.push(found.map_err(io::Error::other)?);
+        }
+        writer.finish(&counts)
+    }
+}
+
+/// The file of a tile of a design, as bytes: tile I of N.
+///
+/// # Errors
+/// If there is no such tile, or the evaluation cannot be cut into tiles.
+pub fn design_tile(
+    study: &Study,
+    evaluator: &Evaluator,
+    one: &Constellation,
+    (tile, tiles): (usize, usize),
+) -> Result<Vec<u8>> {
+    require_tiles(evaluator.setup().grid.len(), tiles)?;
+    let work = TileWork::new(study, evaluator, (one, one.made_of()), tiles)?;
+    let mut bytes = Vec::new();
+    work.write(tile.clamp(1, tiles), &mut bytes)?;
+    Ok(bytes)
+}
+
+/// The metrics of a design from the files of all its tiles.
+///
+/// # Errors
+/// If a file is no tile of it, or one is missing.
+pub fn merged_design(
+    study: &Study,
+    evaluator: &Evaluator,
+    one: &Constellation,
+    paths: Vec<PathBuf>,
+) -> Result<Metrics> {
+    let constellation = one.made_of();
+    let tiles = TilePaths {
+        paths,
+        constellation,
+    };
+    let tiles = tiles.open(study, evaluator)?;
+    let setup = evaluator.setup();
+    let alone = if setup.gnss.is_empty() {
+        None
+    } else {
+        let none = Ephemeris::new(setup.grid, Vec::new());
+        Some(tiles.merge(evaluator, &none)?.0)
+    };
+    let leo = constellations::propagate(one, setup)?;
+    let (metrics, _) = tiles.merge(evaluator, &leo)?;
+    Ok(alone.map_or(metrics, |alone| metrics.with_gain_over(&alone)))
+}
+
+/// Refuses more tiles than instants.
+fn require_tiles(instants: usize, tiles: usize) -> Result<()> {
+    if tiles == 0 || tiles > instants {
+        bail!("there are {instants} instants, and a tile has at least one");
+    }
+    Ok(())
 }
 
 /// What a tile comes to.
 fn size(setup: &Setup, one: &Constellation, tile: Shard) -> TileSize {
-    let samples = setup.sample_count();
+    let samples = SampleShape::from(setup);
     let sets = if setup.gnss.is_empty() { 1 } else { 2 };
     let time_s = |satellites: usize| sweep_time_s(1.0, samples, satellites as f64);
     TileSize {
         tiles: tile.parts,
-        all_bytes: samples as u64 * size_of::<f32>() as u64 * sets,
+        all_bytes: setup.sample_count() as u64 * size_of::<f32>() as u64 * sets,
         one_thread_s: (time_s(one.satellite_count()) + time_s(0)) / tile.parts as f64,
     }
 }

@@ -1,5 +1,6 @@
 //! The directory of a search for the fewest satellites: the certificate grows in it, and the checkpoint says how far.
 
+use super::parts::{PARTS, PartFiles};
 use crate::cli::provenance::provenance;
 use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
@@ -15,7 +16,7 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
-use std::fs::{File, TryLockError};
+use std::fs::{self, File, TryLockError};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 
@@ -50,11 +51,11 @@ fn own() -> BTreeSet<String> {
         REPORT_PAGE,
     ];
     let files = files.into_iter().chain(crate::run::FILES);
-    let inputs = format!("{INPUTS}/");
+    let directories = [INPUTS, PARTS].map(|name| format!("{name}/"));
     files
         .into_iter()
         .map(str::to_owned)
-        .chain([inputs])
+        .chain(directories)
         .collect()
 }
 
@@ -65,41 +66,57 @@ impl SizeDirectory {
         files::recovered(&path)?;
         let lock = held(&path)?;
         let is_vacant = files::is_vacant(&path)?;
-        let is_ours = !is_vacant
-            && path.join(CERTIFICATE_CSV).exists()
-            && read_manifest(&path)
-                .ok()
-                .flatten()
-                .is_some_and(|found| found.identity == identity);
+        let is_ours = is_of(&path, &identity);
         if resumes && is_ours {
             return Self::taken_up(path, identity, lock);
         }
         if !is_vacant && !is_ours {
             if !force {
-                bail!(
-                    "{} holds something other than a search for the fewest satellites of this scenario and version; \
-                     choose another --out, or replace it with --force",
-                    path.display()
-                );
+                bail!(other(&path, ", or replace it with --force"));
             }
             files::refuse_inputs(&path, study.inputs().iter().map(PathBuf::as_path))?;
         }
         if !is_vacant {
             files::refuse_foreign(&path, &own())?;
         }
-        let staged = files::StagedDirectory::new(&path)?;
-        files::write_all(staged.path(), &study.first_files(&identity)?)?;
-        let heading = certificate_heading();
-        files::write_atomically(&staged.path().join(CERTIFICATE_CSV), heading.as_bytes())?;
+        let staged = first_files(&path, study, &identity)?;
         let lock = staged.commit_keeping(&[], &provenance(vec![study.stamp()?]))?;
         Ok(Self {
             certificate: appended(&path.join(CERTIFICATE_CSV))?,
-            bytes: heading.len() as u64,
+            bytes: certificate_heading().len() as u64,
             path,
             identity,
             found: None,
             _lock: lock,
         })
+    }
+
+    /// The parts of the search in a directory in which several processes work, with its lock; the first of them begins it. `None` if
+    /// it has the result already.
+    pub(super) fn join(path: &Path, study: &Study) -> Result<Option<(PartFiles, Option<File>)>> {
+        let identity = study.identity()?;
+        files::recovered(path)?;
+        if files::is_vacant(path)? {
+            let staged = first_files(path, study, &identity)?;
+            fs::create_dir(staged.path().join(PARTS))?;
+            // Of several processes that begin the same search, the first one makes it and the others take it.
+            staged.commit_if_vacant(&provenance(vec![study.stamp()?]))?;
+        }
+        if !is_of(path, &identity) {
+            bail!(other(path, ""));
+        }
+        let lock = files::shared_lock(path);
+        if path.join(SIZE_JSON).exists() {
+            return Ok(None);
+        }
+        let parts = path.join(PARTS);
+        fs::create_dir_all(&parts).with_context(|| format!("cannot make {}", parts.display()))?;
+        Ok(Some((PartFiles::of(path, identity), lock)))
+    }
+
+    /// The parts that shards have left in it.
+    pub(super) fn parts(&self) -> PartFiles {
+        PartFiles::of(&self.path, self.identity.clone())
     }
 
     fn taken_up(path: PathBuf, identity: Identity, lock: Option<File>) -> Result<Self> {
@@ -148,7 +165,11 @@ impl SizeDirectory {
 
     /// Adds witnesses to the certificate.
     pub(super) fn append(&mut self, witnesses: &[(usize, Witness)]) -> Result<()> {
-        let rows = certificate_rows(witnesses)?;
+        self.append_rows(&certificate_rows(witnesses)?)
+    }
+
+    /// Adds lines to the certificate.
+    pub(super) fn append_rows(&mut self, rows: &str) -> Result<()> {
         let cannot = || format!("cannot write {}", self.path.join(CERTIFICATE_CSV).display());
         self.certificate
             .write_all(rows.as_bytes())
@@ -161,7 +182,7 @@ impl SizeDirectory {
     pub(super) fn save(&mut self, search: &SizeSearch) -> Result<()> {
         let cannot = || format!("cannot write {}", self.path.join(CERTIFICATE_CSV).display());
         self.certificate.sync_data().with_context(cannot)?;
-        let state = serde_json::to_string(search)?;
+        let state = serde_json::to_string(&search.kept())?;
         let header = SizeHeader {
             identity: self.identity.clone(),
             certificate_bytes: self.bytes,
@@ -183,8 +204,34 @@ impl SizeDirectory {
         files::write_atomically(&self.path.join(SIZE_CSV), size_csv(result)?.as_bytes())?;
         let mut page = Vec::new();
         write_size_page(result, &mut page)?;
-        files::write_atomically(&self.path.join(REPORT_PAGE), &page)
+        files::write_atomically(&self.path.join(REPORT_PAGE), &page)?;
+        self.parts().remove()
     }
+}
+
+/// Whether a directory has a search of this scenario and version.
+fn is_of(path: &Path, identity: &Identity) -> bool {
+    let manifest = || read_manifest(path).ok().flatten();
+    path.join(CERTIFICATE_CSV).exists()
+        && manifest().is_some_and(|found| found.identity == *identity)
+}
+
+/// Says that a directory holds something else, and what else can be done.
+fn other(path: &Path, further: &str) -> String {
+    format!(
+        "{} holds something other than a search for the fewest satellites of this scenario and version; choose another \
+         --out{further}",
+        path.display()
+    )
+}
+
+/// A directory with what a search begins with.
+fn first_files(path: &Path, study: &Study, identity: &Identity) -> Result<files::StagedDirectory> {
+    let staged = files::StagedDirectory::new(path)?;
+    files::write_all(staged.path(), &study.first_files(identity)?)?;
+    let heading = certificate_heading();
+    files::write_atomically(&staged.path().join(CERTIFICATE_CSV), heading.as_bytes())?;
+    Ok(staged)
 }
 
 /// The number of rows of the certificate in a directory and its checksum; each row is passed to `see`.

@@ -15,7 +15,7 @@ fn at_the_bound(evaluator: &Evaluator, quantity: &str, relation: &str, place: us
     assert!(search.fewest().is_some(), "{constraint}");
     let named = search
         .savings()
-        .iter()
+        .into_iter()
         .filter(|one| one.constraint == constraint);
     assert!(named.count() > 0, "{constraint} rejects nothing");
 }
