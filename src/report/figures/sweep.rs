@@ -104,3 +104,39 @@ fn widened(ends: Option<[f64; 2]>, value: f64) -> Option<[f64; 2]> {
     let [low, high] = ends.unwrap_or([value; 2]);
     Some([low.min(value), high.max(value)])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::typed_columns::TypedColumns;
+
+    fn figures(csv: &str) -> Vec<PlaneChart> {
+        let mut summary = SweepSummary::default();
+        summary.add(&TypedColumns::of_csv(csv).unwrap());
+        let plane = |chart| match chart {
+            Chart::Plane(plane) => plane,
+            other => panic!("{other:?}"),
+        };
+        sweep_figures(&summary).into_iter().map(plane).collect()
+    }
+
+    #[test]
+    fn what_is_the_same_for_all_designs_has_no_figure() {
+        let found = figures(
+            "notation,satellites,planes,mean_pdop,availability,mean_visible\n\
+             a,24,6,2,1,3\nb,24,6,50,1,4\nc,30,6,1.5,1,5\nd,36,6,,1,0\n",
+        );
+        // The planes are the same, and so is availability; CVaR is missing.
+        let titles: Vec<&str> = found.iter().map(|one| one.title.as_str()).collect();
+        let visible = "mean visible LEO satellites by satellites";
+        assert_eq!(titles, ["mean PDOP by satellites", visible]);
+        let best = |chart: &PlaneChart| chart.layers[1].points.clone();
+        assert_eq!(best(&found[0]), [(24.0, 2.0), (30.0, 1.5)]);
+        assert_eq!(best(&found[1]), [(24.0, 4.0), (30.0, 5.0), (36.0, 0.0)]);
+        // PDOP spans more than a factor of 20, and satellites in view begin at 0.
+        let scales = [found[0].y.scale, found[1].y.scale];
+        assert_eq!(scales, [AxisScale::Log, AxisScale::Linear]);
+        assert!(figures("notation,satellites,mean_pdop\na,24,2\n").is_empty());
+        assert!(figures("notation,satellites,mean_pdop\na,24,\nb,30,\n").is_empty());
+    }
+}
