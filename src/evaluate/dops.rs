@@ -91,10 +91,7 @@ impl Evaluator {
         metrics: &Metrics,
         ephemeris: &Ephemeris,
     ) -> Result<DopStatistics, EphemerisError> {
-        let Some(kernel) = self.kernel_for(ephemeris) else {
-            return self.dops_plain(ephemeris);
-        };
-        let summaries = kernel.dops(ephemeris)?;
+        let summaries = self.kernel.dops(ephemeris)?;
         let clocks = self.clock_names().into_iter();
         let tdop = clocks.zip(&summaries[CLOCKS_FROM..]);
         let mut tdop: Vec<_> = tdop

@@ -163,10 +163,7 @@ impl Evaluator {
         ephemeris: &Ephemeris,
         see: impl FnMut(&Instant),
     ) -> Result<(), EphemerisError> {
-        match self.kernel_for(ephemeris) {
-            Some(kernel) => kernel.visit(ephemeris, see),
-            None => self.visit_plain(ephemeris, see),
-        }
+        self.kernel.visit(ephemeris, see)
     }
 
     /// The same by the plain path, the reference for the kernel.

@@ -7,6 +7,7 @@
 //! baseline, and called lane by lane.
 
 use crate::visibility::Mask;
+use std::marker::PhantomData;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 /// Ground points that are processed side by side.
@@ -185,10 +186,12 @@ pub(super) struct SiteLanes<R> {
     pub(super) up: [Lanes<R>; 3],
 }
 
-/// How observations are weighted.
+/// How observations are weighted, and by how many LEO clocks they are made.
 pub(super) trait Weighting {
     /// Whether by the square of the sine of the elevation.
     const BY_SINE: bool;
+    /// Whether LEO satellites have several clocks.
+    const SEVERAL_CLOCKS: bool = false;
     /// PDOP up to which f32 is trusted however many satellites there are.
     const SINGLE_BELOW: f32;
     /// Condition of the sums up to which it is trusted above that.
@@ -212,6 +215,16 @@ impl Weighting for SineWeights {
     const SINGLE_BELOW: f32 = 0.0;
     /// Found by trial ([M-26](crate::models#m-26)): the error of PDOP is at most 1.7e-6 in 999 of 1000 skies.
     const SINGLE_CONDITION: f32 = 64.0;
+}
+
+/// The same weights where the LEO satellites have several clocks. A type of its own leaves the loops of one clock as they are.
+pub(super) struct SeveralClocks<W>(PhantomData<W>);
+
+impl<W: Weighting> Weighting for SeveralClocks<W> {
+    const BY_SINE: bool = W::BY_SINE;
+    const SEVERAL_CLOCKS: bool = true;
+    const SINGLE_BELOW: f32 = W::SINGLE_BELOW;
+    const SINGLE_CONDITION: f32 = W::SINGLE_CONDITION;
 }
 
 /// The line from a point to a satellite, km.
@@ -348,6 +361,23 @@ impl<R: Real> Sums<R> {
         } else {
             R::ZERO
         }
+    }
+
+    /// Forgets the satellites of one point.
+    #[inline(always)]
+    pub(super) fn clear_at(&mut self, lane: usize) {
+        self.xx.0[lane] = R::ZERO;
+        self.yy.0[lane] = R::ZERO;
+        self.zz.0[lane] = R::ZERO;
+        self.xy.0[lane] = R::ZERO;
+        self.xz.0[lane] = R::ZERO;
+        self.yz.0[lane] = R::ZERO;
+        self.x.0[lane] = R::ZERO;
+        self.y.0[lane] = R::ZERO;
+        self.z.0[lane] = R::ZERO;
+        self.weight.0[lane] = R::ZERO;
+        (self.count.0[lane], self.possible.0[lane]) = (0, 0);
+        self.used.0[lane] = 0;
     }
 
     #[inline(always)]

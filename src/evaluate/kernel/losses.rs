@@ -123,7 +123,7 @@ impl Kernel {
         mut settle: impl FnMut(usize, &mut LossDoubts, &mut SampleLosses) -> Result<(), EphemerisError>,
     ) -> Result<(), EphemerisError> {
         let propagation = Propagation::new(ephemeris);
-        let mut work = Workspace::new(ephemeris.satellites().len());
+        let mut work = Workspace::new(&propagation);
         let mut scratch = FixedTiles::default();
         let (mut sky, mut touched) = (LaneSky::default(), Vec::new());
         let mut doubts = LossDoubts::default();

@@ -5,7 +5,7 @@ use super::tiles::{Horizon, Tiles};
 use super::*;
 use crate::constellation::gnss::Preset;
 use crate::constellation::{Design, Orientation, Pattern, Shell, ShellParameters};
-use crate::dop::{Clocks, ObservationWeights};
+use crate::dop::{Clocks, LeoClocks, ObservationWeights};
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::EphemerisSatellite;
 use crate::evaluate::tests::setup;
@@ -22,10 +22,12 @@ use crate::visibility::{Mask, MaskTable};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
+mod clocks;
 mod decisions;
 mod limits;
 mod propagated;
 mod tiled;
+mod windows;
 
 fn relative(ours: Option<f64>, theirs: Option<f64>) -> f64 {
     match (ours, theirs) {
@@ -205,11 +207,12 @@ fn setups() -> impl Strategy<Value = Setup> {
     ]);
     let caps = prop::sample::select(vec![(100.0, 6.0), (1.9, 1.2), (8.0, 2.0)]);
     let weights = prop::sample::select(ObservationWeights::ALL.to_vec());
+    let leo_clocks = prop::sample::select(LeoClocks::ALL.to_vec());
     (
         points(),
         mask,
         0.0..30.0_f64,
-        clocks,
+        (clocks, leo_clocks),
         gnss,
         (caps, weights),
         0..40_000_u32,
@@ -228,7 +231,8 @@ fn setups() -> impl Strategy<Value = Setup> {
                     .with_mask(Mask::from_degrees(mask).unwrap())
                     .with_gnss_mask(Mask::from_degrees(gnss_mask).unwrap())
                     .with_gnss(gnss)
-                    .with_clocks(clocks)
+                    .with_clocks(clocks.0)
+                    .with_leo_clocks(clocks.1)
                     .with_observation_weights(weights)
                     .with_pdop_cap(pdop_cap)
                     .with_metrics(metrics)

@@ -48,7 +48,7 @@ pub(super) fn evaluate(
     };
     let instants = plan.instants_of(tile.part);
     let leo = constellations::propagate(&one.constellation, setup)?;
-    evaluator.require_divisible(&leo)?;
+    evaluator.require_divisible()?;
     let none = Ephemeris::new(setup.grid, Vec::new());
     let parts = [&leo, &none];
     files::StagedFile::new(out)?.commit_written(|file| {
