@@ -194,6 +194,7 @@ impl Evaluator {
     }
 
     /// The same by the plain path, the reference for the kernel.
+    #[cfg(test)]
     fn position_errors_plain(
         &self,
         ephemeris: &Ephemeris,

@@ -8,7 +8,8 @@
 //! visible LEO satellites are all that a sample needs: Σ v vᵀ (five numbers: the sixth follows from
 //! tr Σ v vᵀ = n, but f64 sums it too), Σ v and n. The GNSS sums do not change between designs and
 //! are computed once ([`fixed`]). In f32, PDOP² is the sum of the principal minors over the
-//! determinant; in f64, it comes from the factor of the plain path.
+//! determinant; in f64, it comes from the factor of the plain path. Where the LEO satellites have several clocks, the sums are
+//! made clock by clock ([`clocks`]).
 //!
 //! # Order of work
 //!
@@ -60,7 +61,9 @@ mod tally;
 mod tiled;
 mod tiles;
 mod verdict;
+mod weighting;
 mod windows;
+mod workspace;
 
 pub(super) use fixed::at_most_u16;
 pub use instructions::InstructionSet;
@@ -84,19 +87,21 @@ use crate::frames::EarthRotation;
 use crate::stats::Summary;
 use clocks::ClockBlock;
 use fixed::{Fixed, FixedSample, FixedTiles, SampleInstant};
-use lanes::{Lanes, MaskTerms, SineWeights, UnitWeights};
+use lanes::{Lanes, MaskTerms};
 use limits::{Limits, SingleLimits};
 use memory::Keep;
 use normal::SharedClock;
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::Propagation;
 use rayon::prelude::*;
-use sample::{Doubt, Sample, SampleContext, SampleOutcome, UNSOLVED, Workspace};
+use sample::{Doubt, Sample, SampleContext, SampleOutcome, UNSOLVED};
 use settle::Settling;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use tally::ViewTally;
 use tiles::Tiles;
+use weighting::{SineWeights, UnitWeights};
+use workspace::Workspace;
 
 /// Values of PDOP computed in one piece of work.
 const CHUNK_VALUES: usize = 1 << 18;

@@ -15,8 +15,6 @@ use crate::visibility::Mask;
 
 /// One point at one instant.
 pub(super) struct PlainSample {
-    /// Index into the instants of the grid.
-    pub(super) time: usize,
     /// Index into the points.
     pub(super) site: usize,
     /// Visible LEO satellites.
@@ -86,9 +84,8 @@ pub(super) fn visit(
         evaluator,
         ephemeris,
         |_| true,
-        |time, site, (visible, gnss_visible), geometry| {
+        |_, site, (visible, gnss_visible), geometry| {
             see(PlainSample {
-                time,
                 site,
                 visible,
                 gnss_visible,

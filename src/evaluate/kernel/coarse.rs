@@ -4,12 +4,12 @@
 //! Either way gives the same bits: a satellite that a point does not see adds zeros to its sums.
 
 use super::fixed::FixedSample;
-use super::lanes::{LANES, Lanes, Sums, Weighting};
+use super::lanes::{LANES, Lanes, Sums};
 use super::normal::{FixedTile, Normal, NormalLanes, SharedClock, ZERO};
-use super::sample::{
-    Begun, Doubt, Judging, SampleOutcome, TileCandidates, UNSOLVED, Workspace, doubt,
-};
+use super::sample::{Begun, Doubt, Judging, SampleOutcome, TileCandidates, UNSOLVED, doubt};
 use super::tiles::Group;
+use super::weighting::Weighting;
+use super::workspace::Workspace;
 
 /// Points of a tile up to which they are computed one by one.
 pub(super) const FEW: u32 = 5;

@@ -9,9 +9,8 @@ use super::fixed::FixedSystem;
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes, MaskTerms, SightLine};
 use super::normal::{at, clear_pivot};
-use super::sample::{
-    POSITION_STATES, SampleContext, SampleOutcome, TileCandidates, UNSOLVED, Workspace,
-};
+use super::sample::{POSITION_STATES, SampleContext, SampleOutcome, TileCandidates, UNSOLVED};
+use super::workspace::Workspace;
 use crate::dop::{Clocks, Factor, Symmetric3};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;

@@ -1,6 +1,7 @@
 //! The normal matrix of the position in lanes, and its dilution of precision.
 
-use super::lanes::{LANES, Lanes, Real, Sums, Weighting};
+use super::lanes::{LANES, Lanes, Real, Sums};
+use super::weighting::Weighting;
 use crate::dop::{Factor, Geometry, Symmetric3, pivot_floor};
 use std::ops::AddAssign;
 

@@ -3,12 +3,13 @@
 use super::Kernel;
 use super::fixed::{FixedSample, FixedTiles, SampleInstant};
 use super::instructions::Work;
-use super::lanes::{SeveralClocks, SineWeights, UnitWeights, Weighting};
 use super::limits::Limits;
 use super::propagation::{PatternPropagator, Propagation};
-use super::sample::{Begun, SampleContext, SampleOutcome, Workspace};
+use super::sample::{Begun, SampleContext, SampleOutcome};
 use super::settle::Settling;
 use super::tiles::Tiles;
+use super::weighting::{SeveralClocks, SineWeights, UnitWeights, Weighting};
+use super::workspace::Workspace;
 use crate::dop::ObservationWeights;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use std::ops::ControlFlow;

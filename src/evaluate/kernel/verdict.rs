@@ -1,9 +1,10 @@
 //! What f32 says of the samples of a tile, and where it does not decide.
 
-use super::lanes::{LANES, Lanes, Sums, Weighting};
+use super::lanes::{LANES, Lanes, Sums};
 use super::limits::Limits;
 use super::normal::{FixedTile, NormalLanes, ZERO};
 use super::sample::{POSITION_STATES, UNSOLVED};
+use super::weighting::Weighting;
 
 /// The LEO satellites at the points of a tile.
 pub(super) struct LeoLanes<'a> {

@@ -8,11 +8,13 @@ use super::super::window::SlidingSum;
 use super::Kernel;
 use super::fixed::FixedSample;
 use super::instructions::Work;
-use super::lanes::{LANES, SeveralClocks, SineWeights, UnitWeights, Weighting};
+use super::lanes::LANES;
 use super::limits::Limits;
 use super::normal::NormalLanes;
-use super::sample::{POSITION_STATES, SampleContext, Workspace};
+use super::sample::{POSITION_STATES, SampleContext};
 use super::settle::Settling;
+use super::weighting::{SeveralClocks, SineWeights, UnitWeights, Weighting};
+use super::workspace::Workspace;
 use crate::dop::ObservationWeights;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 
