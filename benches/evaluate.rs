@@ -7,7 +7,7 @@
 use divan::{Bencher, black_box};
 use navwalker::constellation::Design;
 use navwalker::constellation::gnss::Preset;
-use navwalker::dop::{ClockGroup, Geometry, ObservationWeights};
+use navwalker::dop::{ClockGroup, Geometry, LeoClocks, ObservationWeights};
 use navwalker::earth::Surface;
 use navwalker::ephemeris::Ephemeris;
 use navwalker::evaluate::{Evaluator, InstructionSet, Setup};
@@ -139,7 +139,7 @@ fn design_kernel(bencher: Bencher, instructions: InstructionSet) {
 }
 
 /// What users add to a study.
-const ADDITIONS: [&str; 9] = [
+const ADDITIONS: [&str; 12] = [
     "equal",
     "cos-latitude",
     "column",
@@ -149,7 +149,18 @@ const ADDITIONS: [&str; 9] = [
     "sine-elevation",
     "dops",
     "series",
+    "two-shells",
+    "leo-clocks",
+    "windows",
 ];
+
+/// The constellation that is evaluated with an addition.
+fn notation_with(what: &str) -> &'static str {
+    match what {
+        "two-shells" | "leo-clocks" => SHELLS[3],
+        _ => NOTATION,
+    }
+}
 
 /// A skyline of hills: 2° to 13°.
 fn hills() -> MaskTable {
@@ -200,13 +211,16 @@ fn study(what: &str, is_globe: bool) -> Setup {
         "hills" => setup.with_skyline(hills()),
         "street" => setup.with_skyline(street()),
         "sine-elevation" => setup.with_observation_weights(ObservationWeights::SineElevation),
+        "leo-clocks" => setup.with_leo_clocks(LeoClocks::PerPart),
+        "windows" => setup.with_window_s(600.0),
         _ => setup,
     }
 }
 
 fn add(bencher: Bencher, what: &str, is_globe: bool) {
     let setup = study(what, is_globe);
-    let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid).expect(SOUND);
+    let design = notation_with(what).parse().expect(SOUND);
+    let ephemeris = Ephemeris::of_design(&design, Model::J2, setup.grid).expect(SOUND);
     let evaluator = Evaluator::new(setup).expect(SOUND);
     bencher.bench_local(|| match what {
         "series" => drop(black_box(evaluator.series(&ephemeris).expect(SOUND))),

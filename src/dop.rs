@@ -134,9 +134,9 @@ pub struct Geometry {
     clocks: u32,
 }
 
-impl AddAssign for Geometry {
+impl AddAssign<&Self> for Geometry {
     /// Adds the observations of another geometry, with clocks of their own.
-    fn add_assign(&mut self, other: Self) {
+    fn add_assign(&mut self, other: &Self) {
         self.normal += other.normal;
         self.weight += other.weight;
         self.satellites += other.satellites;
@@ -164,6 +164,16 @@ impl Geometry {
         self.weight += group.weight;
         self.satellites += group.count;
         self.clocks += 1;
+    }
+
+    /// The normal matrix of the position.
+    pub(crate) fn normal(&self) -> Symmetric3 {
+        self.normal
+    }
+
+    /// Satellites minus clock states.
+    pub(crate) fn surplus(&self) -> u32 {
+        self.satellites - self.clocks
     }
 
     /// PDOP; `None` if unsolved: fewer satellites than states, a pivot of the normal matrix at or

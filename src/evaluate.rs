@@ -242,6 +242,7 @@ impl Setup {
     #[must_use]
     pub fn memory_bytes(&self, threads: usize, evaluations: usize) -> u64 {
         let lanes = kernel::memory_bytes(self, threads, evaluations) as u64;
+        // Several LEO clocks need the plain path once satellites are lost.
         let needs_plain = self.window_s.is_some() || self.may_have_several_leo_clocks();
         let plain = if needs_plain {
             self.plain_bytes(evaluations)
@@ -276,7 +277,7 @@ impl Setup {
         let samples = self.sample_count();
         let errors = self.accuracy.as_ref().map_or(0, |_| accuracy::SAMPLE_BYTES);
         let windows = self.window_s.map_or(0, |window_s| {
-            let sums = window::site_bytes(window_s, self.grid.step_s());
+            let sums = window::site_bytes(window_s, self.grid.step_s(), self.grid.len());
             sums.saturating_mul(self.sites.len())
         });
         let each = samples.saturating_mul(errors).saturating_add(windows);
@@ -425,10 +426,7 @@ impl Evaluator {
         ephemeris: &Ephemeris,
         histograms: bool,
     ) -> Result<(Metrics, Rechecks, Option<[ViewBins; 2]>), EphemerisError> {
-        let (evaluated, rechecks) = match self.kernel_for(ephemeris) {
-            Some(kernel) => kernel.evaluate(ephemeris, histograms)?,
-            None => (plain::evaluate(self, ephemeris)?, Rechecks::default()),
-        };
+        let (evaluated, rechecks) = self.kernel.evaluate(ephemeris, histograms)?;
         let mut metrics = self.metrics(&evaluated, ephemeris)?;
         metrics = self.with_failures(metrics, ephemeris)?;
         if self.setup.metrics.asks_for_hdop {
@@ -436,12 +434,6 @@ impl Evaluator {
             metrics = metrics.with_dops(&dops);
         }
         Ok((metrics, rechecks, evaluated.bins))
-    }
-
-    /// The fast path, where it suits the satellites: its lanes have one LEO clock.
-    fn kernel_for(&self, ephemeris: &Ephemeris) -> Option<&Kernel> {
-        let is_suited = !self.setup.has_several_leo_clocks(ephemeris);
-        is_suited.then_some(&self.kernel)
     }
 
     /// The metrics of some satellites by the plain path, the reference for the kernel: sample by sample in

@@ -194,7 +194,7 @@ fn geometries_add_with_their_clocks() {
         let other = other[..count].to_vec();
         let mut sum = geometry(std::slice::from_ref(&own[..3].to_vec()));
         assert!(sum.lacks_satellites());
-        sum += geometry(std::slice::from_ref(&other));
+        sum += &geometry(std::slice::from_ref(&other));
         let whole = geometry(&[own[..3].to_vec(), other.clone()]);
         assert_eq!(sum.lacks_satellites(), count == 1, "{count}");
         assert_eq!(whole.lacks_satellites(), count == 1);

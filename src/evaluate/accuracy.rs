@@ -166,12 +166,9 @@ impl Evaluator {
         let Some(accuracy) = &setup.accuracy else {
             return Ok(None);
         };
-        let Some(kernel) = self.kernel_for(ephemeris) else {
-            return self.position_errors_plain(ephemeris, accuracy).map(Some);
-        };
         let mut errors = Errors::default();
         let systems = fixed::systems(setup);
-        kernel.range_normals(ephemeris, accuracy, |instant| {
+        self.kernel.range_normals(ephemeris, accuracy, |instant| {
             let is_open = |normal: &RangeNormal| matches!(normal, RangeNormal::Open);
             let skies = match instant.points.iter().any(is_open) {
                 true => Skies::new(
@@ -197,6 +194,7 @@ impl Evaluator {
     }
 
     /// The same by the plain path, the reference for the kernel.
+    #[cfg(test)]
     fn position_errors_plain(
         &self,
         ephemeris: &Ephemeris,

@@ -5,7 +5,7 @@ use super::{Evaluator, Metrics, Setup, fixed, leo, plain};
 use crate::dop::{ClockGroup, Clocks, DopFamily};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::ground::Site;
-use crate::stats::{Level, Summary, Weighted, summarize_weighted, weighted_quantile};
+use crate::stats::{Level, Summary, Weighted, weighted_quantile};
 use serde::Serialize;
 
 /// The place of the first clock among the dilutions of the kernel: GDOP, HDOP and VDOP come before.
@@ -66,8 +66,6 @@ struct Collected {
     hdop: Vec<Weighted>,
     vdop: Vec<Weighted>,
     tdop: Vec<Vec<Weighted>>,
-    solved_weight: u64,
-    weight: u64,
 }
 
 impl Evaluator {
@@ -91,10 +89,7 @@ impl Evaluator {
         metrics: &Metrics,
         ephemeris: &Ephemeris,
     ) -> Result<DopStatistics, EphemerisError> {
-        let Some(kernel) = self.kernel_for(ephemeris) else {
-            return self.dops_plain(ephemeris);
-        };
-        let summaries = kernel.dops(ephemeris)?;
+        let summaries = self.kernel.dops(ephemeris)?;
         let clocks = self.clock_names().into_iter();
         let tdop = clocks.zip(&summaries[CLOCKS_FROM..]);
         let mut tdop: Vec<_> = tdop
@@ -115,13 +110,14 @@ impl Evaluator {
     ///
     /// # Errors
     /// If a satellite cannot be propagated.
+    #[cfg(test)]
     pub(super) fn dops_plain(
         &self,
         ephemeris: &Ephemeris,
     ) -> Result<DopStatistics, EphemerisError> {
-        let clocks = self.clock_names();
+        let collected = self.collected(ephemeris)?;
         let level = self.setup().metrics.cvar_level;
-        Ok(self.collected(ephemeris)?.statistics(clocks, level))
+        Ok(collected.statistics(self.clock_names(), level, self.weights.total()))
     }
 
     /// The quantile of level `q` of each dilution of the solved samples, in the order of [`DopStatistics::named`], by
@@ -225,15 +221,11 @@ impl Collected {
             hdop: Vec::new(),
             vdop: Vec::new(),
             tdop: vec![Vec::new(); clocks],
-            solved_weight: 0,
-            weight: 0,
         }
     }
 
     fn add(&mut self, dops: Option<&DopFamily>, weight: u64) {
-        self.weight += weight;
         let Some(dops) = dops else { return };
-        self.solved_weight += weight;
         let weight = weight as f64;
         let weighted = |value: f64| Weighted { value, weight };
         self.gdop.push(weighted(dops.gdop));
@@ -247,7 +239,11 @@ impl Collected {
         }
     }
 
-    fn statistics(mut self, clocks: Vec<String>, level: Level) -> DopStatistics {
+    /// With the weight of all samples.
+    #[cfg(test)]
+    fn statistics(mut self, clocks: Vec<String>, level: Level, total: u64) -> DopStatistics {
+        let solved: f64 = self.pdop.iter().map(|sample| sample.weight).sum();
+        use crate::stats::summarize_weighted;
         let clock = |(system, mut samples): (String, Vec<Weighted>)| ClockDop {
             system,
             tdop: summarize_weighted(&mut samples, level),
@@ -261,7 +257,7 @@ impl Collected {
             hdop: summarize_weighted(&mut self.hdop, level),
             vdop: summarize_weighted(&mut self.vdop, level),
             tdop,
-            solved_fraction: self.solved_weight as f64 / self.weight as f64,
+            solved_fraction: solved / total as f64,
         }
     }
 }

@@ -8,7 +8,8 @@
 //! visible LEO satellites are all that a sample needs: Σ v vᵀ (five numbers: the sixth follows from
 //! tr Σ v vᵀ = n, but f64 sums it too), Σ v and n. The GNSS sums do not change between designs and
 //! are computed once ([`fixed`]). In f32, PDOP² is the sum of the principal minors over the
-//! determinant; in f64, it comes from the factor of the plain path.
+//! determinant; in f64, it comes from the factor of the plain path. Where the LEO satellites have several clocks, the sums are
+//! made clock by clock ([`clocks`]).
 //!
 //! # Order of work
 //!
@@ -38,6 +39,7 @@
 //! Values are never sorted, and beyond a certain number not even stored ([`order_statistics`]).
 
 mod candidates;
+mod clocks;
 mod coarse;
 mod dilutions;
 mod fixed;
@@ -58,6 +60,10 @@ mod skylines;
 mod tally;
 mod tiled;
 mod tiles;
+mod verdict;
+mod weighting;
+mod windows;
+mod workspace;
 
 pub(super) use fixed::at_most_u16;
 pub use instructions::InstructionSet;
@@ -68,6 +74,7 @@ pub(super) use memory::{dops_bytes, memory_bytes, memory_of_tile_bytes};
 pub(super) use metres::RangeNormal;
 pub(super) use order_statistics::quantile_rank;
 pub use probe::{SampleTile, SampleTiles};
+pub(super) use windows::WindowPdop;
 
 use super::Setup;
 use super::counts::Threshold;
@@ -78,20 +85,23 @@ use crate::dop::ObservationWeights;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
+use clocks::ClockBlock;
 use fixed::{Fixed, FixedSample, FixedTiles, SampleInstant};
-use lanes::{Lanes, MaskTerms, SineWeights, UnitWeights};
+use lanes::{Lanes, MaskTerms};
 use limits::{Limits, SingleLimits};
 use memory::Keep;
 use normal::SharedClock;
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::Propagation;
 use rayon::prelude::*;
-use sample::{Doubt, Sample, SampleContext, SampleOutcome, UNSOLVED, Workspace};
+use sample::{Doubt, Sample, SampleContext, SampleOutcome, UNSOLVED};
 use settle::Settling;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use tally::ViewTally;
 use tiles::Tiles;
+use weighting::{SineWeights, UnitWeights};
+use workspace::Workspace;
 
 /// Values of PDOP computed in one piece of work.
 const CHUNK_VALUES: usize = 1 << 18;
@@ -201,13 +211,23 @@ impl Kernel {
         })
     }
 
+    /// How satellites are propagated, and by which clocks they are observed.
+    fn propagation<'a>(&self, ephemeris: &'a Ephemeris) -> Propagation<'a> {
+        let propagation = Propagation::new(ephemeris);
+        if self.setup.has_several_leo_clocks(ephemeris) {
+            propagation.with_clocks(ClockBlock::of(ephemeris.parts()))
+        } else {
+            propagation
+        }
+    }
+
     /// Evaluates satellites, with histograms of those in view where asked for.
     pub(super) fn evaluate(
         &self,
         ephemeris: &Ephemeris,
         histograms: bool,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
-        let propagation = &Propagation::new(ephemeris);
+        let propagation = &self.propagation(ephemeris);
         if self.keeps_values() {
             self.keeping(propagation, histograms)
         } else {
@@ -226,7 +246,7 @@ impl Kernel {
         ephemeris: &Ephemeris,
         mut see: impl FnMut(&Instant),
     ) -> Result<(), EphemerisError> {
-        let propagation = &Propagation::new(ephemeris);
+        let propagation = &self.propagation(ephemeris);
         let mut instant = Instant::new(self.setup.sites.len());
         let samples = 0..self.setup.grid.len();
         self.run(propagation, samples, self.scene.limits, |evaluating| {
@@ -384,7 +404,7 @@ impl Kernel {
         limits: Limits,
         mut take: impl FnMut(&mut Evaluating<'_>) -> Result<(), EphemerisError>,
     ) -> Result<Rechecks, EphemerisError> {
-        let mut work = Workspace::new(propagation.ephemeris.satellites().len());
+        let mut work = Workspace::new(propagation);
         let mut outcome = SampleOutcome::new(self.scene.tiles.tiles.len());
         let mut scratch = FixedTiles::default();
         let mut rechecks = Rechecks::default();

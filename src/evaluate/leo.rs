@@ -11,16 +11,10 @@ impl Setup {
     /// nothing is.
     #[must_use]
     pub fn plain_path_note(&self) -> Option<String> {
-        let parts = [
-            (
-                self.window_s.is_some(),
-                "the PDOP of windows (metrics.window-min)",
-            ),
-            (
-                self.may_have_several_leo_clocks(),
-                "several LEO clocks (gnss.leo-clocks)",
-            ),
-        ];
+        let parts = [(
+            self.may_have_several_leo_clocks() && self.metrics.asks_for_n1,
+            "the loss of satellites with several LEO clocks (gnss.leo-clocks)",
+        )];
         let slow = parts.into_iter().filter(|(is_asked, _)| *is_asked);
         let slow: Vec<&str> = slow.map(|(_, what)| what).collect();
         (!slow.is_empty()).then(|| {
@@ -44,8 +38,21 @@ impl Setup {
     }
 }
 
-/// Fills `clocks` with the Earth-fixed positions of the satellites that have one at an instant, clock by clock. There is
-/// always one clock, even of no satellites.
+/// How many clocks the satellites have: at least one, even of no satellites.
+pub(super) fn clock_count(setup: &Setup, ephemeris: &Ephemeris) -> usize {
+    if setup.has_several_leo_clocks(ephemeris) {
+        ephemeris.part_count()
+    } else {
+        1
+    }
+}
+
+/// No position yet of any clock.
+pub(super) fn no_positions(setup: &Setup, ephemeris: &Ephemeris) -> Vec<PlainPositions> {
+    vec![Vec::new(); clock_count(setup, ephemeris)]
+}
+
+/// Fills `clocks` with the Earth-fixed positions of the satellites that have one at an instant, clock by clock.
 pub(super) fn positions(
     setup: &Setup,
     ephemeris: &Ephemeris,
@@ -54,8 +61,7 @@ pub(super) fn positions(
     clocks: &mut Vec<PlainPositions>,
 ) -> Result<(), EphemerisError> {
     let several = setup.has_several_leo_clocks(ephemeris);
-    let count = if several { ephemeris.part_count() } else { 1 };
-    clocks.resize_with(count, Vec::new);
+    clocks.resize_with(clock_count(setup, ephemeris), Vec::new);
     clocks.iter_mut().for_each(Vec::clear);
     for (satellite, &part) in ephemeris.satellites().iter().zip(ephemeris.parts()) {
         if let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? {

@@ -15,8 +15,6 @@ use crate::visibility::Mask;
 
 /// One point at one instant.
 pub(super) struct PlainSample {
-    /// Index into the instants of the grid.
-    pub(super) time: usize,
     /// Index into the points.
     pub(super) site: usize,
     /// Visible LEO satellites.
@@ -85,9 +83,9 @@ pub(super) fn visit(
     visit_geometries(
         evaluator,
         ephemeris,
-        |time, site, (visible, gnss_visible), geometry| {
+        |_| true,
+        |_, site, (visible, gnss_visible), geometry| {
             see(PlainSample {
-                time,
                 site,
                 visible,
                 gnss_visible,
@@ -97,10 +95,12 @@ pub(super) fn visit(
     )
 }
 
-/// Calls `see` with the instant, the point, the visible LEO and GNSS satellites, and the geometry of every sample.
+/// Calls `see` with the instant, the point, the visible LEO and GNSS satellites, and the geometry of every sample of the points
+/// that are wanted.
 pub(super) fn visit_geometries(
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,
+    is_wanted: impl Fn(usize) -> bool,
     mut see: impl FnMut(usize, usize, (u32, u32), Geometry),
 ) -> Result<(), EphemerisError> {
     let setup = evaluator.setup();
@@ -110,7 +110,8 @@ pub(super) fn visit_geometries(
         let elapsed_s = setup.grid.elapsed_s(time);
         let rotation = evaluator.rotations[time];
         leo::positions(setup, ephemeris, elapsed_s, rotation, &mut positions)?;
-        for (site, gnss) in fixed.at(time).iter().enumerate() {
+        let gnss = fixed.at(time).iter().enumerate();
+        for (site, gnss) in gnss.filter(|(site, _)| is_wanted(*site)) {
             let (visible, geometry) = geometry(setup, &setup.sites[site], &positions, gnss);
             see(time, site, (visible, gnss.visible), geometry);
         }

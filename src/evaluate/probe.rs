@@ -13,8 +13,7 @@ impl Evaluator {
     }
 
     /// Passes the samples of some tiles (in ascending order) at each of some instants to `see` until it breaks.
-    /// They are those of an evaluation of all samples, bit for bit. Returns whether the fast path suits the
-    /// satellites; without it, nothing is seen.
+    /// They are those of an evaluation of all samples, bit for bit.
     ///
     /// # Errors
     /// If a satellite cannot be propagated.
@@ -23,12 +22,8 @@ impl Evaluator {
         ephemeris: &Ephemeris,
         instants: impl Iterator<Item = (usize, &'t [u32])>,
         see: impl FnMut(SampleTile<'_>) -> ControlFlow<()>,
-    ) -> Result<bool, EphemerisError> {
-        let Some(kernel) = self.kernel_for(ephemeris) else {
-            return Ok(false);
-        };
-        kernel.probe(ephemeris, instants, see)?;
-        Ok(true)
+    ) -> Result<(), EphemerisError> {
+        self.kernel.probe(ephemeris, instants, see)
     }
 
     /// GNSS satellites of the setup, in view or not.

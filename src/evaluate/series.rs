@@ -9,6 +9,7 @@ pub use samples::SampleGrid;
 use super::Evaluator;
 use super::counts::{COVERAGE_LEVELS, Coverage, OutageRun, Outages, Threshold};
 use super::histograms::{ViewBins, ViewHistograms};
+#[cfg(test)]
 use super::plain::{self, PlainSample};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::ground::Site;
@@ -163,10 +164,7 @@ impl Evaluator {
         ephemeris: &Ephemeris,
         see: impl FnMut(&Instant),
     ) -> Result<(), EphemerisError> {
-        match self.kernel_for(ephemeris) {
-            Some(kernel) => kernel.visit(ephemeris, see),
-            None => self.visit_plain(ephemeris, see),
-        }
+        self.kernel.visit(ephemeris, see)
     }
 
     /// The same by the plain path, the reference for the kernel.
@@ -180,6 +178,7 @@ impl Evaluator {
         Ok(cuts.series())
     }
 
+    #[cfg(test)]
     fn visit_plain(
         &self,
         ephemeris: &Ephemeris,
@@ -189,13 +188,11 @@ impl Evaluator {
         let mut instant = Instant::new(self.setup().sites.len());
         plain::visit(self, ephemeris, |sample| {
             let PlainSample {
-                time,
                 site,
                 visible,
                 gnss_visible,
                 pdop,
             } = sample;
-            instant.number = time;
             instant.points[site] = PointSample {
                 visible,
                 gnss_visible,
@@ -203,6 +200,7 @@ impl Evaluator {
             };
             if site + 1 == instant.points.len() {
                 see(&instant);
+                instant.number += 1;
             }
         })
     }

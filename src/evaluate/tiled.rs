@@ -61,8 +61,8 @@ impl Evaluator {
     /// Refuses what cannot be cut into tiles.
     ///
     /// # Errors
-    /// If the setup asks for more than PDOP and satellites in view, or the satellites have several clocks.
-    pub fn require_divisible(&self, ephemeris: &Ephemeris) -> Result<(), TileError> {
+    /// If the setup asks for more than PDOP and satellites in view.
+    pub fn require_divisible(&self) -> Result<(), TileError> {
         let setup = self.setup();
         let asked = [
             (setup.accuracy.is_some(), "the accuracy in metres"),
@@ -72,10 +72,6 @@ impl Evaluator {
             (
                 setup.metrics.expects_up.is_some(),
                 "the expected availability",
-            ),
-            (
-                setup.has_several_leo_clocks(ephemeris),
-                "several LEO clocks",
             ),
         ];
         match asked.into_iter().find(|(is_asked, _)| *is_asked) {
@@ -95,7 +91,7 @@ impl Evaluator {
         instants: Range<usize>,
         values: &mut impl Write,
     ) -> Result<TileCounts, TileError> {
-        self.require_divisible(ephemeris)?;
+        self.require_divisible()?;
         let end = instants.end.min(self.setup().grid.len());
         let put = |bytes: &[u8]| values.write_all(bytes);
         let [leo, all] = self
@@ -117,7 +113,7 @@ impl Evaluator {
         counts: TileCounts,
         read: &mut dyn FnMut(usize, &mut [u8]) -> io::Result<()>,
     ) -> Result<(Metrics, ViewHistograms), TileError> {
-        self.require_divisible(ephemeris)?;
+        self.require_divisible()?;
         if !counts.are_of(self.weights.total()) {
             return Err(TileError::Counts);
         }

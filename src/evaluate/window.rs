@@ -1,14 +1,16 @@
-//! The information of the observations in a window of time ([M-51](crate::models#m-51)), by the plain path.
+//! The information of the observations in a window of time ([M-51](crate::models#m-51)).
 //!
 //! One position and, at each instant, clocks of their own: the contributions to the normal matrix of the position add up
 //! over the instants. How far the lines of sight turn within the window is thereby part of the geometry.
 
 use super::accuracy::SigmaSpread;
+use super::kernel::WindowPdop;
 use super::{Evaluator, plain};
 use crate::dop::Geometry;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::stats::Weighted;
 use serde::{Deserialize, Serialize};
+use std::ops::AddAssign;
 
 /// The PDOP of all observations in a window, over the points and the beginnings of the windows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -31,51 +33,135 @@ fn instants(window_s: f64, step_s: f64) -> usize {
     (window_s / step_s - STEP_SLACK).ceil().max(1.0) as usize
 }
 
-/// Memory of the windows of a point, bytes.
-pub(super) fn site_bytes(window_s: f64, step_s: f64) -> usize {
-    instants(window_s, step_s).saturating_mul(size_of::<Geometry>())
+/// Memory of the windows of a point in so many instants, bytes.
+pub(super) fn site_bytes(window_s: f64, step_s: f64, samples: usize) -> usize {
+    let sliding = instants(window_s, step_s).saturating_mul(size_of::<Geometry>());
+    sliding.saturating_add(samples * (size_of::<WindowPdop>() + size_of::<Weighted>()))
 }
 
-/// The sum over the last instants of one point, without subtraction, which would lose digits: a queue of two stacks.
+/// The sum over the last instants of some points, without subtraction, which would lose digits: a queue of two stacks.
 #[derive(Clone, Default)]
-struct SlidingSum {
+pub(super) struct SlidingSum<S> {
     /// Sums from each instant of the older part to its end, the oldest last.
-    older: Vec<Geometry>,
+    older: Vec<S>,
     /// The newer part.
-    newer: Vec<Geometry>,
-    newer_sum: Geometry,
+    newer: Vec<S>,
+    newer_sum: S,
 }
 
-impl SlidingSum {
+impl<S: Clone + Default + for<'a> AddAssign<&'a S>> SlidingSum<S> {
     /// Adds an instant and returns the sum over the last `count`, if there are as many.
-    fn push(&mut self, geometry: Geometry, count: usize) -> Option<Geometry> {
-        self.newer.push(geometry);
-        self.newer_sum += geometry;
+    #[inline(always)]
+    pub(super) fn push(&mut self, instant: S, count: usize) -> Option<S> {
+        self.newer_sum += &instant;
+        self.newer.push(instant);
         if self.older.len() + self.newer.len() < count {
             return None;
         }
-        let mut sum = self.older.last().copied().unwrap_or_default();
-        sum += self.newer_sum;
+        let mut sum = self.older.last().cloned().unwrap_or_default();
+        sum += &self.newer_sum;
         if self.older.pop().is_none() {
-            let mut running = Geometry::default();
-            while let Some(geometry) = self.newer.pop() {
-                running += geometry;
-                self.older.push(running);
+            let mut running = S::default();
+            while let Some(instant) = self.newer.pop() {
+                running += &instant;
+                self.older.push(running.clone());
             }
             self.older.pop();
-            self.newer_sum = Geometry::default();
+            self.newer_sum = S::default();
         }
         Some(sum)
     }
 }
 
-/// The windows of all points.
-#[derive(Default)]
-struct Windows {
-    /// PDOP of those that are solved.
-    pdop: Vec<Weighted>,
-    /// Weight of all.
-    total: f64,
+/// The windows of all points, by their first instants and then by point.
+struct Windows(Vec<WindowPdop>);
+
+impl Windows {
+    /// By the lanes, and where those leave a window open, all windows of its point by the plain path.
+    fn new(
+        evaluator: &Evaluator,
+        ephemeris: &Ephemeris,
+        count: usize,
+    ) -> Result<Self, EphemerisError> {
+        let mut all = Self(Vec::new());
+        let take = |points: &[WindowPdop]| all.0.extend_from_slice(points);
+        evaluator.kernel.windows(ephemeris, count, take)?;
+        let points = evaluator.setup().sites.len();
+        let mut is_open = vec![false; points];
+        for (number, window) in all.0.iter().enumerate() {
+            is_open[number % points] |= *window == WindowPdop::Open;
+        }
+        if is_open.contains(&true) {
+            all.settle(evaluator, ephemeris, count, |site| is_open[site])?;
+        }
+        Ok(all)
+    }
+
+    /// Takes the windows of some points from the plain path.
+    fn settle(
+        &mut self,
+        evaluator: &Evaluator,
+        ephemeris: &Ephemeris,
+        count: usize,
+        is_wanted: impl Fn(usize) -> bool,
+    ) -> Result<(), EphemerisError> {
+        let setup = evaluator.setup();
+        let points = setup.sites.len();
+        let mut sums = vec![SlidingSum::<Geometry>::default(); points];
+        plain::visit_geometries(evaluator, ephemeris, &is_wanted, |time, site, _, one| {
+            if let Some(sum) = sums[site].push(one, count) {
+                let pdop = sum.pdop(setup.pdop_cap);
+                let first = time + 1 - count;
+                self.0[first * points + site] =
+                    pdop.map_or(WindowPdop::Unsolved, WindowPdop::Solved);
+            }
+        })
+    }
+
+    /// All by the plain path, the reference for the lanes.
+    #[cfg(test)]
+    fn plain(
+        evaluator: &Evaluator,
+        ephemeris: &Ephemeris,
+        count: usize,
+    ) -> Result<Self, EphemerisError> {
+        let setup = evaluator.setup();
+        let whole = (setup.grid.len() + 1).saturating_sub(count);
+        let mut all = Self(vec![WindowPdop::Open; whole * setup.sites.len()]);
+        all.settle(evaluator, ephemeris, count, |_| true)?;
+        Ok(all)
+    }
+
+    /// PDOP of those that are solved, weighted by point.
+    fn solved(&self, evaluator: &Evaluator) -> Vec<Weighted> {
+        let points = evaluator.setup().sites.len();
+        let numbered = self.0.iter().enumerate();
+        let solved = numbered.filter_map(|(number, window)| match *window {
+            WindowPdop::Solved(value) => Some(Weighted {
+                value,
+                weight: evaluator.weights.of(number % points) as f64,
+            }),
+            WindowPdop::Unsolved | WindowPdop::Open => None,
+        });
+        solved.collect()
+    }
+
+    fn statistics(&self, evaluator: &Evaluator) -> InformationPdop {
+        let setup = evaluator.setup();
+        let points = setup.sites.len();
+        let weight = |site: usize| evaluator.weights.of(site) as f64;
+        let total = (self.0.len() / points) as f64 * (0..points).map(weight).sum::<f64>();
+        let mut pdop = self.solved(evaluator);
+        let solved: f64 = pdop.iter().map(|window| window.weight).sum();
+        let spread = SigmaSpread::of(&mut pdop, setup.metrics.cvar_level);
+        InformationPdop {
+            mean: spread.map(|one| one.mean),
+            p95: spread.map(|one| one.p95),
+            cvar: spread.map(|one| one.cvar),
+            // A window longer than the span has no place in it.
+            solved_fraction: if total > 0.0 { solved / total } else { 0.0 },
+        }
+    }
 }
 
 impl Evaluator {
@@ -87,18 +173,8 @@ impl Evaluator {
         &self,
         ephemeris: &Ephemeris,
     ) -> Result<Option<InformationPdop>, EphemerisError> {
-        let Some(Windows { mut pdop, total }) = self.windows(ephemeris)? else {
-            return Ok(None);
-        };
-        let solved: f64 = pdop.iter().map(|window| window.weight).sum();
-        let spread = SigmaSpread::of(&mut pdop, self.setup().metrics.cvar_level);
-        Ok(Some(InformationPdop {
-            mean: spread.map(|one| one.mean),
-            p95: spread.map(|one| one.p95),
-            cvar: spread.map(|one| one.cvar),
-            // A window longer than the span has no place in it.
-            solved_fraction: if total > 0.0 { solved / total } else { 0.0 },
-        }))
+        let windows = self.windows(ephemeris)?;
+        Ok(windows.map(|windows| windows.statistics(self)))
     }
 
     /// The PDOP of each window that is solved; `None` without a window.
@@ -109,28 +185,26 @@ impl Evaluator {
         &self,
         ephemeris: &Ephemeris,
     ) -> Result<Option<Vec<Weighted>>, EphemerisError> {
-        Ok(self.windows(ephemeris)?.map(|windows| windows.pdop))
+        let windows = self.windows(ephemeris)?;
+        Ok(windows.map(|windows| windows.solved(self)))
+    }
+
+    /// The PDOP of windows by the plain path, the reference for the lanes.
+    #[cfg(test)]
+    pub(super) fn information_pdop_plain(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<InformationPdop, EphemerisError> {
+        let setup = self.setup();
+        let count = instants(setup.window_s.unwrap_or(0.0), setup.grid.step_s());
+        Ok(Windows::plain(self, ephemeris, count)?.statistics(self))
     }
 
     fn windows(&self, ephemeris: &Ephemeris) -> Result<Option<Windows>, EphemerisError> {
         let setup = self.setup();
-        let Some(window_s) = setup.window_s else {
-            return Ok(None);
-        };
-        let count = instants(window_s, setup.grid.step_s());
-        let mut sums = vec![SlidingSum::default(); setup.sites.len()];
-        let mut windows = Windows::default();
-        plain::visit_geometries(self, ephemeris, |_, site, _, geometry| {
-            let Some(sum) = sums[site].push(geometry, count) else {
-                return;
-            };
-            let weight = self.weights.of(site) as f64;
-            windows.total += weight;
-            if let Some(value) = sum.pdop(setup.pdop_cap) {
-                windows.pdop.push(Weighted { value, weight });
-            }
-        })?;
-        Ok(Some(windows))
+        let count = setup.window_s.map(|s| instants(s, setup.grid.step_s()));
+        let windows = count.map(|count| Windows::new(self, ephemeris, count));
+        windows.transpose()
     }
 }
 

@@ -1,6 +1,7 @@
 use super::*;
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
+use crate::dop::LeoClocks;
 use crate::earth::Surface;
 use crate::evaluate::InstructionSet;
 use crate::evaluate::testing::{self, design_matrix, observed};
@@ -204,8 +205,16 @@ fn lanes_equal_the_plain_path() {
         for (clocks, notation) in [
             (Clocks::PerSystem, "delta:55:72/8/3@925"),
             (Clocks::Shared, "delta:40:40/5/1@400"),
+            // A clock for each shell.
+            (
+                Clocks::PerSystem,
+                "delta:53:60/6/1@1000+star:87:30/5/1@1100",
+            ),
         ] {
-            let setup = setup.clone().with_clocks(clocks);
+            let setup = setup
+                .clone()
+                .with_clocks(clocks)
+                .with_leo_clocks(LeoClocks::PerPart);
             let design: Design = notation.parse().unwrap();
             let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
             let evaluators = InstructionSet::ALL

@@ -114,7 +114,8 @@ pub(super) fn pass(
     tree: &SightTree,
     sets: &Sets<'_>,
 ) -> Result<Vec<SampleLosses>, EphemerisError> {
-    let lanes = evaluator.kernel_for(sets.ephemeris);
+    // The lanes that lose satellites have one LEO clock.
+    let lanes = (sets.clock_count == 1).then_some(&evaluator.kernel);
     if lanes.is_none() {
         // Made before the threads ask for it.
         evaluator.fixed()?;

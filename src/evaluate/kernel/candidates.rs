@@ -1,5 +1,6 @@
 //! Satellites that a cap of ground points may see.
 
+use super::clocks::ClockBlock;
 use super::propagation::{BLOCK, PositionBlock, Positions};
 use super::tiles::{Cap, Horizon};
 
@@ -18,6 +19,8 @@ pub(super) struct Block {
     q: [f32; BLOCK],
     /// Number of each among all satellites.
     index: [u32; BLOCK],
+    /// The clock that they share, by its number among those of the LEO satellites.
+    clock: u32,
 }
 
 impl Block {
@@ -28,6 +31,7 @@ impl Block {
         rest: [[0.0; BLOCK]; 3],
         q: [f32::NAN; BLOCK],
         index: [0; BLOCK],
+        clock: 0,
     };
 
     /// The position seen from a place close to it, which is exact in f32: good to f32 of the distance, not of the radius.
@@ -44,6 +48,11 @@ impl Block {
     #[inline(always)]
     pub(super) fn index(&self, n: usize) -> usize {
         self.index[n] as usize
+    }
+
+    #[inline(always)]
+    pub(super) fn clock(&self) -> u32 {
+        self.clock
     }
 
     /// A bit for each satellite that some part of the cap may see.
@@ -100,14 +109,19 @@ pub(super) fn bits(mut word: u64) -> impl Iterator<Item = usize> {
 #[derive(Debug, Clone)]
 pub(super) struct Candidates {
     blocks: Vec<Block>,
+    /// Places of the blocks that are in use.
     count: usize,
 }
 
 impl Candidates {
-    /// An empty list with capacity for `count`.
+    /// An empty list with capacity for `count` of one clock.
     pub(super) fn with_capacity(count: usize) -> Self {
+        Self::with_blocks(count.div_ceil(BLOCK))
+    }
+
+    pub(super) fn with_blocks(blocks: usize) -> Self {
         Self {
-            blocks: vec![Block::EMPTY; count.div_ceil(BLOCK)],
+            blocks: vec![Block::EMPTY; blocks],
             count: 0,
         }
     }
@@ -126,11 +140,34 @@ impl Candidates {
         self.count = positions.count;
     }
 
-    /// Those of `others` that some part of the cap may see.
+    /// All satellites of several clocks, each block with those of one.
+    #[inline(always)]
+    pub(super) fn fill_by_clock(
+        &mut self,
+        positions: &Positions,
+        horizon: &Horizon,
+        clocks: &[ClockBlock],
+    ) {
+        for (to, from) in self.blocks.iter_mut().zip(clocks) {
+            to.fill(&from.positions(positions), horizon.reach2, 0);
+            for (index, &satellite) in to.index.iter_mut().zip(&from.satellites) {
+                *index = satellite;
+            }
+            to.clock = from.clock;
+        }
+        self.count = clocks.len() * BLOCK;
+    }
+
+    /// Those of `others` that some part of the cap may see; those of a clock begin a block.
     #[inline(always)]
     pub(super) fn select(&mut self, others: &Self, cap: &Cap, slack_km: f32) {
         self.count = 0;
+        let mut clock = 0;
         for block in others.blocks() {
+            if block.clock != clock {
+                clock = block.clock;
+                self.end_block();
+            }
             for n in bits(block.inside(cap, slack_km)) {
                 let to = &mut self.blocks[self.count / BLOCK];
                 let place = self.count % BLOCK;
@@ -142,12 +179,20 @@ impl Candidates {
                 }
                 to.q[place] = block.q[n];
                 to.index[place] = block.index[n];
+                to.clock = clock;
                 self.count += 1;
             }
         }
+        self.end_block();
+    }
+
+    /// Leaves the rest of the last block empty.
+    #[inline(always)]
+    fn end_block(&mut self) {
         if !self.count.is_multiple_of(BLOCK) {
             // One NaN in the sum of the test is enough.
             self.blocks[self.count / BLOCK].x[self.count % BLOCK..].fill(f32::NAN);
+            self.count = self.count.next_multiple_of(BLOCK);
         }
     }
 }

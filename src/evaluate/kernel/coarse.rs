@@ -4,10 +4,12 @@
 //! Either way gives the same bits: a satellite that a point does not see adds zeros to its sums.
 
 use super::fixed::FixedSample;
-use super::lanes::{LANES, Lanes, Sums, Weighting};
+use super::lanes::{LANES, Lanes, Sums};
 use super::normal::{FixedTile, Normal, NormalLanes, SharedClock, ZERO};
-use super::sample::{Begun, Doubt, Judging, SampleOutcome, UNSOLVED, Workspace, doubt};
+use super::sample::{Begun, Doubt, Judging, SampleOutcome, TileCandidates, UNSOLVED, doubt};
 use super::tiles::Group;
+use super::weighting::Weighting;
+use super::workspace::Workspace;
 
 /// Points of a tile up to which they are computed one by one.
 pub(super) const FEW: u32 = 5;
@@ -24,6 +26,8 @@ struct CoarsePoint {
 struct Batch {
     slots: [Option<CoarsePoint>; LANES],
     sums: Sums<f64>,
+    /// Where there are several LEO clocks, what they leave.
+    clocks: NormalLanes<f64>,
     /// The number of the tile if all are of one, each in its lane.
     whole: Option<usize>,
     /// Otherwise the GNSS part of each.
@@ -36,6 +40,7 @@ impl Batch {
         Self {
             slots: [None; LANES],
             sums: Sums::zero(),
+            clocks: NormalLanes::nothing(),
             whole: None,
             fixed: GatheredFixed::NONE,
             count: 0,
@@ -87,6 +92,7 @@ impl Batches {
             Some(batch) => {
                 batch.slots = [None; LANES];
                 batch.sums = Sums::zero();
+                batch.clocks = NormalLanes::nothing();
                 batch.whole = None;
                 batch.count = 0;
             }
@@ -126,10 +132,16 @@ impl Judging<'_> {
         let (number, candidates) = (self.number, self.candidates);
         if coarse.0.iter().sum::<u32>() > FEW {
             let batch = out.coarse.of_tile(number, coarse);
-            batch.sums = match &self.scene.tiles.tiles[number].sky {
-                None => candidates.double_sums::<W>(self.scene, number, self.positions),
-                Some(_) => candidates.double_sums_of_seen::<W>(self, &out.seen),
-            };
+            if W::SEVERAL_CLOCKS {
+                let mut seen = out.seen.as_slice();
+                for clock in candidates.by_clock() {
+                    let own = self.double_sums::<W>(clock, seen);
+                    batch.clocks.add_clock::<W>(&own);
+                    seen = seen.get(clock.count()..).unwrap_or_default();
+                }
+            } else {
+                batch.sums = self.double_sums::<W>(candidates, &out.seen);
+            }
             return;
         }
         for lane in (0..LANES).filter(|&lane| coarse.0[lane] != 0) {
@@ -137,14 +149,50 @@ impl Judging<'_> {
         }
     }
 
+    /// The sums over satellites, with the points that see each of them where there is a skyline.
+    #[inline(always)]
+    fn double_sums<W: Weighting>(
+        &self,
+        satellites: TileCandidates<'_>,
+        seen: &[Lanes<u32>],
+    ) -> Sums<f64> {
+        match &self.scene.tiles.tiles[self.number].sky {
+            None => satellites.double_sums::<W>(self.scene, self.number, self.positions),
+            Some(_) => satellites.double_sums_of_seen::<W>(self, seen),
+        }
+    }
+
     /// The same at one of them.
     #[inline(always)]
     fn sum_point<W: Weighting>(&self, lane: usize, out: &mut SampleOutcome) {
-        let (scene, tile) = (self.scene, self.number);
+        let tile = self.number;
         let batch = out.coarse.with_room();
         let place = batch.push(CoarsePoint { tile, lane }, self.fixed);
-        let (points, sums) = (&scene.tiles.tiles[tile], &mut batch.sums);
-        let satellites = self.candidates.satellites();
+        if !W::SEVERAL_CLOCKS {
+            let to = (place, &mut batch.sums);
+            self.add_point::<W>(self.candidates, &out.seen, lane, to);
+            return;
+        }
+        let mut seen = out.seen.as_slice();
+        for clock in self.candidates.by_clock() {
+            self.add_point::<W>(clock, seen, lane, (place, &mut batch.sums));
+            batch.clocks.add_clock_at::<W>(&batch.sums, place);
+            batch.sums.clear_at(place);
+            seen = seen.get(clock.count()..).unwrap_or_default();
+        }
+    }
+
+    /// Adds satellites as the point in a lane sees them, in some place of the sums.
+    #[inline(always)]
+    fn add_point<W: Weighting>(
+        &self,
+        satellites: TileCandidates<'_>,
+        seen: &[Lanes<u32>],
+        lane: usize,
+        (place, sums): (usize, &mut Sums<f64>),
+    ) {
+        let (scene, points) = (self.scene, &self.scene.tiles.tiles[self.number]);
+        let satellites = satellites.satellites();
         if points.sky.is_none() {
             for n in satellites {
                 let satellite = self.positions.at(n);
@@ -153,7 +201,7 @@ impl Judging<'_> {
             }
             return;
         }
-        for (n, seen) in satellites.zip(&out.seen) {
+        for (n, seen) in satellites.zip(seen) {
             if seen.0[lane] != 0 {
                 let satellite = self.positions.at(n);
                 let (line, ..) = points.double.line(satellite, &scene.double, lane);
@@ -174,16 +222,23 @@ impl Begun<'_> {
         out: &mut SampleOutcome,
     ) {
         let limits = &self.scene.limits;
+        let mut clocks = limits.clocks;
+        if W::SEVERAL_CLOCKS {
+            clocks += work.clock_count() - 1;
+        }
         let mut coarse = std::mem::take(&mut out.coarse);
         for batch in coarse.all() {
-            let system = NormalLanes::new::<W>(&batch.sums, &batch.fixed(fixed));
-            let double = system.pdop(limits.clocks);
+            let mut system = NormalLanes::new::<W>(&batch.sums, &batch.fixed(fixed));
+            if W::SEVERAL_CLOCKS {
+                system += &batch.clocks;
+            }
+            let double = system.pdop(clocks);
             for (place, slot) in batch.slots.iter().enumerate() {
                 let Some(CoarsePoint { tile, lane }) = *slot else {
                     continue;
                 };
                 let pdop = double.0[place];
-                let satellites = system.surplus.0[place] + limits.clocks;
+                let satellites = system.surplus.0[place] + clocks;
                 if pdop < f64::INFINITY && limits.decides(pdop, satellites) {
                     let solved = pdop <= limits.cap;
                     out.pdop[tile].0[lane] = if solved {

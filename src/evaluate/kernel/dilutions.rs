@@ -6,15 +6,17 @@
 //! doubt, [`DopFamily`] is computed from the sums of the plain path.
 
 use super::super::dops::{CLOCKS_FROM, groups};
-use super::super::{Setup, fixed, plain};
+use super::super::{Setup, fixed, leo};
 use super::fixed::{Fixed, FixedSample, SampleInstant};
 use super::instructions::Work;
-use super::lanes::{LANES, Lanes, SineWeights, Sums, UnitWeights, Weighting};
+use super::lanes::{LANES, Lanes, Sums};
 use super::normal::{NormalLanes, SharedClock, at};
 use super::order_statistics::{Counts, Found, Places, RankSearch};
 use super::propagation::Propagation;
-use super::sample::{SampleContext, SampleOutcome, UNSOLVED, Workspace};
+use super::sample::{SampleContext, SampleOutcome, TileCandidates, UNSOLVED};
 use super::tiles::Tile;
+use super::weighting::{SeveralClocks, SineWeights, UnitWeights, Weighting};
+use super::workspace::Workspace;
 use super::{Evaluating, Kernel, summed};
 use crate::dop::{DopFamily, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -61,9 +63,23 @@ struct Dilution<'a> {
     /// The clocks of the GNSS at all instants, or none.
     kept: &'a [SharedClock],
     leo: &'a Ephemeris,
+    /// How many clocks the LEO satellites have.
+    leo_clocks: usize,
 }
 
 impl Dilution<'_> {
+    /// The dilutions before the LEO clocks, which have the last place together.
+    fn places(&self) -> usize {
+        let clocks = self.scene.limits.clocks as usize;
+        CLOCKS_FROM + clocks
+    }
+
+    /// Room for an instant.
+    fn rows(&self) -> DilutionRows {
+        let clocks = self.scene.limits.clocks as usize + self.leo_clocks - 1;
+        DilutionRows::new(clocks, self.scene.tiles.tiles.len())
+    }
+
     fn compute(
         &self,
         evaluating: &mut Evaluating<'_>,
@@ -83,6 +99,7 @@ impl Dilution<'_> {
             fixed: evaluating.fixed,
             clocks,
             clock_count: self.fixed.clock_count(),
+            leo_clocks: self.leo_clocks,
             work: evaluating.work,
             outcome: evaluating.outcome,
             rows,
@@ -92,12 +109,12 @@ impl Dilution<'_> {
             return Ok(());
         }
         let (elapsed_s, rotation) = (evaluating.instant.elapsed_s, evaluating.instant.rotation);
-        let mut leo = Vec::with_capacity(self.leo.satellites().len());
-        plain::earth_fixed(self.leo, elapsed_s, rotation, &mut leo)?;
+        let mut clocks = Vec::new();
+        leo::positions(self.setup, self.leo, elapsed_s, rotation, &mut clocks)?;
         let gnss = fixed::positions(&self.fixed.systems, elapsed_s, rotation)?;
         for (tile, lane) in rest {
             let site = &self.setup.sites[self.scene.tiles.tiles[tile].members[lane] as usize];
-            let groups = groups(self.setup, site, std::slice::from_ref(&leo), &gnss);
+            let groups = groups(self.setup, site, &clocks, &gnss);
             let family = DopFamily::of(&groups, &site.local, self.setup.pdop_cap);
             rows.set(tile, lane, family.as_ref());
         }
@@ -121,13 +138,14 @@ impl Kernel {
         &self,
         ephemeris: &Ephemeris,
     ) -> Result<Vec<Option<Summary>>, EphemerisError> {
-        let propagation = &Propagation::new(ephemeris);
+        let propagation = &self.propagation(ephemeris);
         let dilution = Dilution {
             setup: &self.setup,
             scene: &self.scene,
             fixed: &self.fixed,
             kept: self.kept_clocks()?,
             leo: ephemeris,
+            leo_clocks: leo::clock_count(&self.setup, ephemeris),
         };
         if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
             self.dops_keeping(propagation, &dilution)
@@ -160,13 +178,8 @@ impl Kernel {
         clocks.map(Vec::as_slice).map_err(Clone::clone)
     }
 
-    fn dilution_rows(&self) -> DilutionRows {
-        let clocks = self.scene.limits.clocks as usize;
-        DilutionRows::new(clocks, self.scene.tiles.tiles.len())
-    }
-
-    fn dilution_places(&self) -> Places {
-        Places::new(largest_dilution(&self.setup))
+    fn dilution_places(&self, leo_clocks: usize) -> Places {
+        Places::new(largest_dilution(&self.setup, leo_clocks))
     }
 
     /// One pass over the samples and two over the stored values.
@@ -175,16 +188,18 @@ impl Kernel {
         propagation: &Propagation<'_>,
         dilution: &Dilution<'_>,
     ) -> Result<Vec<Option<Summary>>, EphemerisError> {
-        let mut rows = self.dilution_rows();
-        let mut kept = vec![Vec::new(); rows.0.len()];
+        let mut rows = dilution.rows();
+        let mut kept = vec![Vec::new(); dilution.places()];
+        let last = kept.len() - 1;
         let samples = 0..self.setup.grid.len();
         self.run(propagation, samples, self.scene.limits, |instant| {
             dilution.compute(instant, &mut rows)?;
-            let pairs = kept.iter_mut().zip(&rows.0);
-            pairs.for_each(|(kept, row)| kept.extend_from_slice(row));
+            for (n, row) in rows.0.iter().enumerate() {
+                kept[n.min(last)].extend_from_slice(row);
+            }
             Ok(())
         })?;
-        let places = self.dilution_places();
+        let places = self.dilution_places(dilution.leo_clocks);
         let summary = |values: &Vec<Lanes<f32>>| {
             let (mut counts, mut found) = (Counts::new(places), Found::new());
             let sum = self.count(values, &mut counts);
@@ -202,16 +217,19 @@ impl Kernel {
         dilution: &Dilution<'_>,
     ) -> Result<Vec<Option<Summary>>, EphemerisError> {
         let chunks = self.chunks(self.setup.grid.len());
-        let (places, level) = (self.dilution_places(), self.setup.metrics.cvar_level);
-        let channels = self.dilution_rows().0.len();
+        let places = self.dilution_places(dilution.leo_clocks);
+        let level = self.setup.metrics.cvar_level;
+        let channels = dilution.places();
+        let last = channels - 1;
         let (counts, sums) = self.pass(
             propagation,
             &chunks,
             || vec![Counts::new(places); channels],
             |instant, counts, sums| {
-                let mut rows = self.dilution_rows();
+                let mut rows = dilution.rows();
                 dilution.compute(instant, &mut rows)?;
                 for (n, row) in rows.0.iter().enumerate() {
+                    let n = n.min(last);
                     sums[n] += self.count(row, &mut counts[n]);
                 }
                 Ok(())
@@ -225,10 +243,11 @@ impl Kernel {
             &chunks,
             || vec![Found::new(); channels],
             |instant, found, tails| {
-                let mut rows = self.dilution_rows();
+                let mut rows = dilution.rows();
                 dilution.compute(instant, &mut rows)?;
-                for (n, (row, search)) in rows.0.iter().zip(&searches).enumerate() {
-                    if let Some(search) = search {
+                for (n, row) in rows.0.iter().enumerate() {
+                    let n = n.min(last);
+                    if let Some(search) = &searches[n] {
                         tails[n] += self.find(row, search, &mut found[n]);
                     }
                 }
@@ -246,8 +265,9 @@ impl Kernel {
 
 /// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP² for unit weights.
 /// For others there is none, because a satellite near the horizon has next to no weight.
-pub(super) fn largest_dilution(setup: &Setup) -> f64 {
-    let (cap2, clocks) = (setup.pdop_cap * setup.pdop_cap, setup.clock_states() as f64);
+pub(super) fn largest_dilution(setup: &Setup, leo_clocks: usize) -> f64 {
+    let cap2 = setup.pdop_cap * setup.pdop_cap;
+    let clocks = (setup.clock_states() + leo_clocks - 1) as f64;
     match setup.observation_weights {
         ObservationWeights::Unit => (cap2 + clocks * (1.0 + cap2)).sqrt() * 1.001,
         ObservationWeights::SineElevation => f64::from(f32::MAX),
@@ -261,6 +281,7 @@ struct Dilute<'a> {
     /// The clocks of the GNSS, tile by tile, and how many a tile has.
     clocks: &'a [SharedClock],
     clock_count: usize,
+    leo_clocks: usize,
     work: &'a mut Workspace,
     outcome: &'a SampleOutcome,
     rows: &'a mut DilutionRows,
@@ -271,9 +292,13 @@ impl Work for Dilute<'_> {
 
     #[inline(always)]
     fn run(self) {
-        match self.scene.weights {
-            ObservationWeights::Unit => self.dilute::<UnitWeights>(),
-            ObservationWeights::SineElevation => self.dilute::<SineWeights>(),
+        match (self.scene.weights, self.work.has_several_clocks()) {
+            (ObservationWeights::Unit, false) => self.dilute::<UnitWeights>(),
+            (ObservationWeights::SineElevation, false) => self.dilute::<SineWeights>(),
+            (ObservationWeights::Unit, true) => self.dilute::<SeveralClocks<UnitWeights>>(),
+            (ObservationWeights::SineElevation, true) => {
+                self.dilute::<SeveralClocks<SineWeights>>();
+            }
         }
     }
 }
@@ -282,28 +307,35 @@ impl Dilute<'_> {
     #[inline(always)]
     fn dilute<W: Weighting>(self) {
         let tiles = &self.scene.tiles.tiles;
-        let mut clocks = Vec::with_capacity(self.clock_count + 1);
+        let mut clocks = Vec::with_capacity(self.clock_count + self.leo_clocks);
         for group in &self.scene.tiles.groups {
             self.work.select(self.scene, group);
             for number in group.tiles.clone() {
-                let mut leo = Sums::<f64>::zero();
                 let candidates = self.work.candidates(number, group);
-                candidates.look(
-                    self.scene,
-                    number,
-                    &self.work.positions,
-                    &mut |l, line, seen| {
-                        leo.add_line::<W>(line, seen, seen, l);
-                    },
-                );
+                let sums = |satellites: TileCandidates<'_>| {
+                    satellites.double_sums::<W>(self.scene, number, &self.work.positions)
+                };
                 let fixed = self.fixed.tile(number);
                 clocks.clear();
                 let of_tile = number * self.clock_count..(number + 1) * self.clock_count;
                 for clock in &self.clocks[of_tile] {
                     clocks.push(ClockLanes::of_system(clock));
                 }
-                clocks.push(ClockLanes::of_design::<W>(&leo, fixed.shared));
-                let normal = NormalLanes::new::<W>(&leo, &fixed);
+                let normal = if W::SEVERAL_CLOCKS {
+                    let first = clocks.len();
+                    clocks.resize_with(first + self.leo_clocks, ClockLanes::unseen);
+                    let mut normal = NormalLanes::of_fixed(&fixed);
+                    for clock in candidates.by_clock() {
+                        let leo = sums(clock);
+                        clocks[first + clock.clock()] = ClockLanes::of_design::<W>(&leo, None);
+                        normal.add_clock::<W>(&leo);
+                    }
+                    normal
+                } else {
+                    let leo = sums(candidates);
+                    clocks.push(ClockLanes::of_design::<W>(&leo, fixed.shared));
+                    NormalLanes::new::<W>(&leo, &fixed)
+                };
                 let covariance = CofactorLanes::new(&normal.matrix);
                 let pdop = &self.outcome.pdop[number];
                 dilute(
@@ -328,11 +360,16 @@ struct ClockLanes {
 
 impl ClockLanes {
     #[inline(always)]
-    fn of_system(clock: &SharedClock) -> Self {
-        let mut lanes = Self {
+    fn unseen() -> Self {
+        Self {
             mean: [ZERO; 3],
             weight: ZERO,
-        };
+        }
+    }
+
+    #[inline(always)]
+    fn of_system(clock: &SharedClock) -> Self {
+        let mut lanes = Self::unseen();
         for l in 0..LANES {
             for (axis, mean) in lanes.mean.iter_mut().enumerate() {
                 mean.0[l] = clock.mean(axis, l);
@@ -347,10 +384,7 @@ impl ClockLanes {
     fn of_design<W: Weighting>(leo: &Sums<f64>, shared: Option<&SharedClock>) -> Self {
         let mut lanes = match shared {
             Some(shared) => Self::of_system(shared),
-            None => Self {
-                mean: [ZERO; 3],
-                weight: ZERO,
-            },
+            None => Self::unseen(),
         };
         for l in 0..LANES {
             let theirs = lanes.weight.0[l];

@@ -6,6 +6,7 @@
 //! all instruction sets give the same bits. Nor does it map arrays: a closure that is not inlined is compiled for the
 //! baseline, and called lane by lane.
 
+use super::weighting::Weighting;
 use crate::visibility::Mask;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
@@ -185,35 +186,6 @@ pub(super) struct SiteLanes<R> {
     pub(super) up: [Lanes<R>; 3],
 }
 
-/// How observations are weighted.
-pub(super) trait Weighting {
-    /// Whether by the square of the sine of the elevation.
-    const BY_SINE: bool;
-    /// PDOP up to which f32 is trusted however many satellites there are.
-    const SINGLE_BELOW: f32;
-    /// Condition of the sums up to which it is trusted above that.
-    const SINGLE_CONDITION: f32;
-}
-
-/// All alike.
-pub(super) struct UnitWeights;
-
-/// sin² of the elevation.
-pub(super) struct SineWeights;
-
-impl Weighting for UnitWeights {
-    const BY_SINE: bool = false;
-    const SINGLE_BELOW: f32 = 2.0;
-    const SINGLE_CONDITION: f32 = 64.0;
-}
-
-impl Weighting for SineWeights {
-    const BY_SINE: bool = true;
-    const SINGLE_BELOW: f32 = 0.0;
-    /// Found by trial ([M-26](crate::models#m-26)): the error of PDOP is at most 1.7e-6 in 999 of 1000 skies.
-    const SINGLE_CONDITION: f32 = 64.0;
-}
-
 /// The line from a point to a satellite, km.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SightLine<R> {
@@ -348,6 +320,23 @@ impl<R: Real> Sums<R> {
         } else {
             R::ZERO
         }
+    }
+
+    /// Forgets the satellites of one point.
+    #[inline(always)]
+    pub(super) fn clear_at(&mut self, lane: usize) {
+        self.xx.0[lane] = R::ZERO;
+        self.yy.0[lane] = R::ZERO;
+        self.zz.0[lane] = R::ZERO;
+        self.xy.0[lane] = R::ZERO;
+        self.xz.0[lane] = R::ZERO;
+        self.yz.0[lane] = R::ZERO;
+        self.x.0[lane] = R::ZERO;
+        self.y.0[lane] = R::ZERO;
+        self.z.0[lane] = R::ZERO;
+        self.weight.0[lane] = R::ZERO;
+        (self.count.0[lane], self.possible.0[lane]) = (0, 0);
+        self.used.0[lane] = 0;
     }
 
     #[inline(always)]

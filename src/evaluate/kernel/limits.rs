@@ -1,7 +1,7 @@
 //! The thresholds of PDOP, and where the lanes decide about them.
 
 use super::super::counts::Threshold;
-use super::lanes::{UnitWeights, Weighting};
+use super::weighting::{UnitWeights, Weighting};
 use crate::dop::pivot_floor;
 
 /// The thresholds of PDOP, and how close to them f32 and f64 can decide.

@@ -8,14 +8,16 @@
 use super::Kernel;
 use super::fixed::{FixedSample, FixedTiles, SampleInstant, at_most_u16};
 use super::instructions::Work;
-use super::lanes::{LANES, Lanes, SineWeights, Sums, UnitWeights, Weighting};
+use super::lanes::{LANES, Lanes, Sums};
 use super::losses::downdate::{LossLimits, TileGeometry};
 use super::losses::sky::{LaneSky, OpenSky};
 use super::losses::worst::BegunTile;
 use super::normal::FixedTile;
 use super::propagation::{PatternPropagator, Propagation};
-use super::sample::{SampleContext, Workspace};
+use super::sample::SampleContext;
 use super::tiles::{Group, Tile};
+use super::weighting::{SineWeights, UnitWeights, Weighting};
+use super::workspace::Workspace;
 use crate::dop::ObservationWeights;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use std::ops::Range;
@@ -123,7 +125,7 @@ impl Kernel {
         mut settle: impl FnMut(usize, &mut LossDoubts, &mut SampleLosses) -> Result<(), EphemerisError>,
     ) -> Result<(), EphemerisError> {
         let propagation = Propagation::new(ephemeris);
-        let mut work = Workspace::new(ephemeris.satellites().len());
+        let mut work = Workspace::new(&propagation);
         let mut scratch = FixedTiles::default();
         let (mut sky, mut touched) = (LaneSky::default(), Vec::new());
         let mut doubts = LossDoubts::default();

@@ -134,7 +134,7 @@ fn clock_bytes(setup: &Setup) -> usize {
 /// Memory of all dilutions of one evaluation, bytes.
 pub(in super::super) fn dops_bytes(setup: &Setup, threads: usize) -> usize {
     let rows = CLOCKS_FROM + setup.clock_states();
-    let places = Places::new(largest_dilution(setup));
+    let places = Places::new(largest_dilution(setup, 1));
     let counts = rows * (places.bytes() + Found::BYTES);
     let values = match tiles(setup) * LANES {
         values if values <= Keep::default().values => rows * values * size_of::<f32>() + counts,

@@ -9,8 +9,8 @@ use super::fixed::FixedSystem;
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes, MaskTerms, SightLine};
 use super::normal::{at, clear_pivot};
-use super::propagation::Propagation;
-use super::sample::{POSITION_STATES, SampleContext, SampleOutcome, UNSOLVED, Workspace};
+use super::sample::{POSITION_STATES, SampleContext, SampleOutcome, TileCandidates, UNSOLVED};
+use super::workspace::Workspace;
 use crate::dop::{Clocks, Factor, Symmetric3};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
@@ -41,7 +41,7 @@ impl Kernel {
         accuracy: &Accuracy,
         mut see: impl FnMut(&RangeInstant) -> Result<(), EphemerisError>,
     ) -> Result<(), EphemerisError> {
-        let propagation = &Propagation::new(ephemeris);
+        let propagation = &self.propagation(ephemeris);
         let tiles = &self.scene.tiles;
         let mut lanes = vec![RangeLanes::NONE; tiles.tiles.len()];
         let samples = 0..self.setup.grid.len();
@@ -245,15 +245,22 @@ impl Work for Weigh<'_> {
                     }
                 }
                 let candidates = self.work.candidates(number, group);
-                candidates.look(
-                    self.scene,
-                    number,
-                    &self.work.positions,
-                    &mut |l, line, seen| {
-                        sums.add_line(line, seen, leo, l);
-                    },
-                );
-                to.add(&sums);
+                let add = |satellites: TileCandidates<'_>, sums: &mut RangeSums| {
+                    let mut add =
+                        |l: usize, line: &_, seen: bool| sums.add_line(line, seen, leo, l);
+                    satellites.look(self.scene, number, &self.work.positions, &mut add);
+                };
+                if !self.work.has_several_clocks() {
+                    add(candidates, &mut sums);
+                    to.add(&sums);
+                    continue;
+                }
+                // Each system has its own clock then, so that no sums are left of the GNSS.
+                for clock in candidates.by_clock() {
+                    add(clock, &mut sums);
+                    to.add(&sums);
+                    sums = RangeSums::NONE;
+                }
             }
         }
     }

@@ -1,7 +1,9 @@
 //! The normal matrix of the position in lanes, and its dilution of precision.
 
-use super::lanes::{LANES, Lanes, Real, Sums, Weighting};
-use crate::dop::{Factor, Symmetric3, pivot_floor};
+use super::lanes::{LANES, Lanes, Real, Sums};
+use super::weighting::Weighting;
+use crate::dop::{Factor, Geometry, Symmetric3, pivot_floor};
+use std::ops::AddAssign;
 
 /// The GNSS part of the normal matrix at the points of a tile: (x, x), (y, y), (z, z), (x, y),
 /// (x, z), (y, z).
@@ -117,6 +119,7 @@ pub(super) fn at<R: Copy>(matrix: &[Lanes<R>; 6], lane: usize) -> [R; 6] {
 }
 
 /// The normal matrix of the position at the points of a tile.
+#[derive(Debug, Clone)]
 pub(super) struct NormalLanes<R> {
     /// (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
     pub(super) matrix: [Lanes<R>; 6],
@@ -135,6 +138,46 @@ impl<R: Real> NormalLanes<R> {
         system
     }
 
+    /// No satellite.
+    #[inline(always)]
+    pub(super) fn nothing() -> Self {
+        Self {
+            matrix: [Lanes([R::ZERO; LANES]); 6],
+            surplus: Lanes([0; LANES]),
+        }
+    }
+
+    /// The GNSS part alone.
+    #[inline(always)]
+    pub(super) fn of_fixed(fixed: &FixedTile<'_>) -> Self {
+        let mut system = Self::nothing();
+        for l in 0..LANES {
+            for (element, matrix) in system.matrix.iter_mut().enumerate() {
+                matrix.0[l] = fixed.normal::<R>(element, l);
+            }
+            system.surplus.0[l] = u32::from(fixed.surplus[l]);
+        }
+        system
+    }
+
+    /// Adds the satellites of a clock of the design.
+    #[inline(always)]
+    pub(super) fn add_clock<W: Weighting>(&mut self, sums: &Sums<R>) {
+        for l in 0..LANES {
+            self.add_clock_at::<W>(sums, l);
+        }
+    }
+
+    /// The same at one point.
+    #[inline(always)]
+    pub(super) fn add_clock_at<W: Weighting>(&mut self, sums: &Sums<R>, l: usize) {
+        let (own, surplus) = of_clock::<W, R>(sums, l);
+        for (matrix, own) in self.matrix.iter_mut().zip(own) {
+            matrix.0[l] += own;
+        }
+        self.surplus.0[l] += surplus;
+    }
+
     /// The matrix at one point: (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
     #[inline(always)]
     pub(super) fn at(&self, lane: usize) -> [R; 6] {
@@ -150,25 +193,17 @@ impl<R: Real> NormalLanes<R> {
     /// The GNSS part and Σ w v vᵀ - (Σ w v)(Σ w v)ᵀ / Σ w of the design.
     #[inline(always)]
     fn of_two_clocks<W: Weighting>(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
-        let mut system = Self {
-            matrix: [Lanes([R::ZERO; LANES]); 6],
-            surplus: Lanes([0; LANES]),
-        };
+        let mut system = Self::nothing();
         for l in 0..LANES {
-            let used = sums.used::<W>(l);
-            let clocks = u32::from(used > 0);
-            system.surplus.0[l] = u32::from(fixed.surplus[l]) + used - clocks;
-            let weight = sums.weight::<W>(l);
-            let scale = R::ONE / if weight > R::ZERO { weight } else { R::ONE };
-            let (x, y, z) = (sums.x.0[l], sums.y.0[l], sums.z.0[l]);
-            let (xx, yy, zz) = (sums.xx.0[l], sums.yy.0[l], sums.zz::<W>(l));
+            let (own, surplus) = of_clock::<W, R>(sums, l);
+            system.surplus.0[l] = u32::from(fixed.surplus[l]) + surplus;
             let matrix = &mut system.matrix;
-            matrix[0].0[l] = fixed.normal::<R>(0, l) + (xx - x * x * scale);
-            matrix[1].0[l] = fixed.normal::<R>(1, l) + (yy - y * y * scale);
-            matrix[2].0[l] = fixed.normal::<R>(2, l) + (zz - z * z * scale);
-            matrix[3].0[l] = fixed.normal::<R>(3, l) + (sums.xy.0[l] - x * y * scale);
-            matrix[4].0[l] = fixed.normal::<R>(4, l) + (sums.xz.0[l] - x * z * scale);
-            matrix[5].0[l] = fixed.normal::<R>(5, l) + (sums.yz.0[l] - y * z * scale);
+            matrix[0].0[l] = fixed.normal::<R>(0, l) + own[0];
+            matrix[1].0[l] = fixed.normal::<R>(1, l) + own[1];
+            matrix[2].0[l] = fixed.normal::<R>(2, l) + own[2];
+            matrix[3].0[l] = fixed.normal::<R>(3, l) + own[3];
+            matrix[4].0[l] = fixed.normal::<R>(4, l) + own[4];
+            matrix[5].0[l] = fixed.normal::<R>(5, l) + own[5];
         }
         system
     }
@@ -200,6 +235,46 @@ impl<R: Real> NormalLanes<R> {
             self.matrix[3].0[l] += gain * x * y;
             self.matrix[4].0[l] += gain * x * z;
             self.matrix[5].0[l] += gain * y * z;
+        }
+    }
+}
+
+/// Σ w v vᵀ - (Σ w v)(Σ w v)ᵀ / Σ w of the satellites of a clock at one point, and their number beyond the clock.
+#[inline(always)]
+fn of_clock<W: Weighting, R: Real>(sums: &Sums<R>, l: usize) -> ([R; 6], u32) {
+    let used = sums.used::<W>(l);
+    let weight = sums.weight::<W>(l);
+    let scale = R::ONE / if weight > R::ZERO { weight } else { R::ONE };
+    let (x, y, z) = (sums.x.0[l], sums.y.0[l], sums.z.0[l]);
+    let own = [
+        sums.xx.0[l] - x * x * scale,
+        sums.yy.0[l] - y * y * scale,
+        sums.zz::<W>(l) - z * z * scale,
+        sums.xy.0[l] - x * y * scale,
+        sums.xz.0[l] - x * z * scale,
+        sums.yz.0[l] - y * z * scale,
+    ];
+    (own, used - u32::from(used > 0))
+}
+
+impl<R: Real> Default for NormalLanes<R> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::nothing()
+    }
+}
+
+impl<R: Real> AddAssign<&Self> for NormalLanes<R> {
+    /// Adds satellites with clocks of their own.
+    #[inline(always)]
+    fn add_assign(&mut self, other: &Self) {
+        for (mine, theirs) in self.matrix.iter_mut().zip(&other.matrix) {
+            for l in 0..LANES {
+                mine.0[l] += theirs.0[l];
+            }
+        }
+        for l in 0..LANES {
+            self.surplus.0[l] += other.surplus.0[l];
         }
     }
 }
@@ -236,10 +311,34 @@ impl NormalLanes<f32> {
 }
 
 impl NormalLanes<f64> {
+    /// Takes the sums of the plain path at one point.
+    pub(super) fn set(&mut self, lane: usize, geometry: &Geometry) {
+        let Symmetric3 {
+            xx,
+            yy,
+            zz,
+            xy,
+            xz,
+            yz,
+        } = geometry.normal();
+        for (matrix, element) in self.matrix.iter_mut().zip([xx, yy, zz, xy, xz, yz]) {
+            matrix.0[lane] = element;
+        }
+        self.surplus.0[lane] = geometry.surplus();
+    }
+
     /// PDOP by the factor of the plain path; infinite where a pivot is not clearly above rounding
     /// for satellites of unit weight, `clocks` of them beyond the surplus at most.
     #[inline(always)]
     pub(super) fn pdop(&self, clocks: u32) -> Lanes<f64> {
+        self.pdop_of_sum(clocks, 1)
+    }
+
+    /// The same of a sum over instants. The order in which they are added moves a pivot by at most two roundings of the weight
+    /// for each, an eighth of a floor.
+    #[inline(always)]
+    pub(super) fn pdop_of_sum(&self, clocks: u32, instants: usize) -> Lanes<f64> {
+        let floors = 1.0 + (instants - 1) as f64 / 32.0;
         let mut lanes = Lanes([f64::INFINITY; LANES]);
         for l in 0..LANES {
             let [xx, yy, zz, xy, xz, yz] = self.at(l);
@@ -251,7 +350,8 @@ impl NormalLanes<f64> {
                 xz,
                 yz,
             });
-            let clear = factor.exceeds(clear_pivot(f64::from(self.surplus.0[l] + clocks)));
+            let weight = f64::from(self.surplus.0[l].saturating_add(clocks));
+            let clear = factor.exceeds(floors * clear_pivot(weight));
             let pdop = factor.trace_of_inverse().root();
             lanes.0[l] = if clear { pdop } else { f64::INFINITY };
         }

@@ -3,12 +3,13 @@
 use super::Kernel;
 use super::fixed::{FixedSample, FixedTiles, SampleInstant};
 use super::instructions::Work;
-use super::lanes::{SineWeights, UnitWeights, Weighting};
 use super::limits::Limits;
 use super::propagation::{PatternPropagator, Propagation};
-use super::sample::{Begun, SampleContext, SampleOutcome, Workspace};
+use super::sample::{Begun, SampleContext, SampleOutcome};
 use super::settle::Settling;
 use super::tiles::Tiles;
+use super::weighting::{SeveralClocks, SineWeights, UnitWeights, Weighting};
+use super::workspace::Workspace;
 use crate::dop::ObservationWeights;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use std::ops::ControlFlow;
@@ -62,7 +63,7 @@ impl Kernel {
         instants: impl Iterator<Item = (usize, &'t [u32])>,
         see: impl FnMut(SampleTile<'_>) -> ControlFlow<()>,
     ) -> Result<(), EphemerisError> {
-        let propagation = Propagation::new(ephemeris);
+        let propagation = self.propagation(ephemeris);
         self.probe_within(&propagation, self.scene.limits, instants, see)
     }
 
@@ -75,7 +76,7 @@ impl Kernel {
         mut see: impl FnMut(SampleTile<'_>) -> ControlFlow<()>,
     ) -> Result<(), EphemerisError> {
         let ephemeris = propagation.ephemeris;
-        let mut work = Workspace::new(ephemeris.satellites().len());
+        let mut work = Workspace::new(propagation);
         let mut outcome = SampleOutcome::new(self.scene.tiles.tiles.len());
         let mut scratch = FixedTiles::default();
         for (number, tiles) in instants {
@@ -147,9 +148,13 @@ impl Work for SomeTiles<'_> {
         for (pattern, turn) in self.patterns.iter().zip(&self.work.turns) {
             pattern.place_at(turn, &mut self.work.positions);
         }
-        match self.scene.weights {
-            ObservationWeights::Unit => self.evaluate::<UnitWeights>(),
-            ObservationWeights::SineElevation => self.evaluate::<SineWeights>(),
+        match (self.scene.weights, self.work.has_several_clocks()) {
+            (ObservationWeights::Unit, false) => self.evaluate::<UnitWeights>(),
+            (ObservationWeights::SineElevation, false) => self.evaluate::<SineWeights>(),
+            (ObservationWeights::Unit, true) => self.evaluate::<SeveralClocks<UnitWeights>>(),
+            (ObservationWeights::SineElevation, true) => {
+                self.evaluate::<SeveralClocks<SineWeights>>();
+            }
         }
     }
 }

@@ -8,6 +8,7 @@
 
 mod anomaly;
 
+use super::clocks::ClockBlock;
 use crate::constellation::Satellite;
 use crate::ephemeris::{Ephemeris, EphemerisError, ShellSpan};
 use crate::frames::EarthRotation;
@@ -43,7 +44,7 @@ pub(super) struct Positions {
 }
 
 impl PositionBlock {
-    const NOWHERE: Self = Self {
+    pub(super) const NOWHERE: Self = Self {
         x: [f64::NAN; BLOCK],
         y: [f64::NAN; BLOCK],
         z: [f64::NAN; BLOCK],
@@ -171,6 +172,8 @@ pub(super) struct Propagation<'a> {
     pub(super) ephemeris: &'a Ephemeris,
     pub(super) patterns: Vec<PatternPropagator>,
     others: Vec<Range<usize>>,
+    /// The satellites by their clocks; empty if they share one.
+    pub(super) clocks: Vec<ClockBlock>,
 }
 
 impl<'a> Propagation<'a> {
@@ -188,7 +191,13 @@ impl<'a> Propagation<'a> {
             ephemeris,
             patterns,
             others,
+            clocks: Vec::new(),
         }
+    }
+
+    /// The same satellites with several clocks.
+    pub(super) fn with_clocks(self, clocks: Vec<ClockBlock>) -> Self {
+        Self { clocks, ..self }
     }
 
     /// Starts a sample: the positions of the satellites without a pattern, and the rotation of each pattern.

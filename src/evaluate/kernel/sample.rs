@@ -1,15 +1,18 @@
 //! One instant at all points with all satellites: the code that is compiled for each instruction set.
 
-use super::candidates::{Block, Candidates, bits};
+use super::candidates::{Block, bits};
 use super::coarse::Batches;
 use super::fixed::FixedSample;
 use super::instructions::Work;
-use super::lanes::{LANES, Lanes, MaskTerms, SightLine, SineWeights, Sums, UnitWeights, Weighting};
+use super::lanes::{LANES, Lanes, MaskTerms, SightLine, Sums};
 use super::limits::Limits;
-use super::normal::{FixedTile, NormalLanes};
-use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
+use super::normal::{FixedTile, NormalLanes, ZERO};
+use super::propagation::{BLOCK, PatternPropagator, Positions};
 use super::skylines::{Sight, SightSlack, Skyward};
-use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tile, Tiles};
+use super::tiles::{Group, Tile, Tiles};
+use super::verdict::{ClockSums, LaneVerdict, LeoLanes};
+use super::weighting::{SeveralClocks, SineWeights, UnitWeights, Weighting};
+use super::workspace::Workspace;
 use crate::dop::ObservationWeights;
 use crate::visibility::Mask;
 
@@ -27,80 +30,6 @@ pub(super) struct SampleContext {
     pub(super) mask: Mask,
     pub(super) weights: ObservationWeights,
     pub(super) limits: Limits,
-}
-
-/// Memory of one evaluation, reused for each instant.
-pub(super) struct Workspace {
-    pub(super) positions: Positions,
-    /// Of each pattern, at the sample.
-    pub(super) turns: Vec<Turn>,
-    all: Candidates,
-    near: Candidates,
-    /// Number of words per tile.
-    blocks: usize,
-    /// The satellites that may be visible from the tiles of a group, one bit each, tile by tile.
-    words: Vec<u64>,
-}
-
-impl Workspace {
-    /// Takes the satellites where they are now.
-    #[inline(always)]
-    pub(super) fn begin(&mut self, horizon: &Horizon) {
-        self.all.fill(&self.positions, horizon);
-    }
-
-    /// Selects the satellites that the tiles of a group may see.
-    #[inline(always)]
-    pub(super) fn select(&mut self, scene: &SampleContext, group: &Group) {
-        let slack_km = self.select_near(group);
-        let blocks = self.near.blocks();
-        let tiles = &scene.tiles.tiles[group.tiles.clone()];
-        for (tile, words) in tiles.iter().zip(self.words.chunks_exact_mut(self.blocks)) {
-            for (block, word) in blocks.iter().zip(words) {
-                *word = block.inside(&tile.cap, slack_km);
-            }
-        }
-    }
-
-    /// Selects the satellites that a group may see, and returns the error bound of a cap test, km.
-    #[inline(always)]
-    pub(super) fn select_near(&mut self, group: &Group) -> f32 {
-        let slack_km = Horizon::cap_slack_km(&self.positions);
-        self.near.select(&self.all, &group.cap, slack_km);
-        slack_km
-    }
-
-    /// Selects those that one tile of the group may see.
-    #[inline(always)]
-    pub(super) fn select_tile(&mut self, tile: &Tile, place: usize, slack_km: f32) {
-        let words = &mut self.words[place * self.blocks..(place + 1) * self.blocks];
-        for (block, word) in self.near.blocks().iter().zip(words) {
-            *word = block.inside(&tile.cap, slack_km);
-        }
-    }
-
-    /// The satellites that a tile of the selected group may see.
-    #[inline(always)]
-    pub(super) fn candidates(&self, number: usize, group: &Group) -> TileCandidates<'_> {
-        let place = number - group.tiles.start;
-        TileCandidates {
-            blocks: self.near.blocks(),
-            words: &self.words[place * self.blocks..(place + 1) * self.blocks],
-        }
-    }
-
-    pub(super) fn new(satellites: usize) -> Self {
-        let all = Candidates::with_capacity(satellites);
-        let blocks = satellites.div_ceil(BLOCK).max(1);
-        Self {
-            positions: Positions::new(satellites),
-            turns: Vec::new(),
-            near: all.clone(),
-            blocks,
-            words: vec![0; blocks * TILES_IN_GROUP],
-            all,
-        }
-    }
 }
 
 /// Why the lanes cannot decide.
@@ -177,12 +106,19 @@ impl Work for Sample<'_> {
             pattern.place_at(turn, &mut self.work.positions);
         }
         let (scene, limits, fixed) = (self.scene, self.limits, &self.fixed);
-        match scene.weights {
-            ObservationWeights::Unit => {
-                evaluate::<UnitWeights>(scene, limits, fixed, self.work, self.outcome);
+        let (work, out) = (self.work, self.outcome);
+        match (scene.weights, work.has_several_clocks()) {
+            (ObservationWeights::Unit, false) => {
+                evaluate::<UnitWeights>(scene, limits, fixed, work, out);
             }
-            ObservationWeights::SineElevation => {
-                evaluate::<SineWeights>(scene, limits, fixed, self.work, self.outcome);
+            (ObservationWeights::SineElevation, false) => {
+                evaluate::<SineWeights>(scene, limits, fixed, work, out);
+            }
+            (ObservationWeights::Unit, true) => {
+                evaluate::<SeveralClocks<UnitWeights>>(scene, limits, fixed, work, out);
+            }
+            (ObservationWeights::SineElevation, true) => {
+                evaluate::<SeveralClocks<SineWeights>>(scene, limits, fixed, work, out);
             }
         }
     }
@@ -254,20 +190,40 @@ impl<'a> Begun<'a> {
             positions: &work.positions,
             candidates,
         };
-        // Each arm goes to the end, so that tiles without a skyline keep their sums in registers.
-        match &tile.sky {
-            None => judging.judge::<W>(&candidates.sums::<W>(tile, &self.mask), out),
-            Some(sky) => {
-                let points = Skyward {
-                    sites: &tile.single,
-                    sky,
-                    mask: &self.mask,
-                    slack: self.slack,
+        out.seen.clear();
+        if W::SEVERAL_CLOCKS {
+            let mut sums = ClockSums::of_fixed(fixed);
+            for clock in candidates.by_clock() {
+                let of_clock = match self.skyward(tile) {
+                    None => clock.sums::<W>(tile, &self.mask),
+                    Some(points) => clock.sums_skyward::<W>(&points, tile, &judging, out),
                 };
+                sums.add_clock::<W>(&of_clock);
+            }
+            judging.judge::<W>(&sums.system, &sums.leo(), out);
+            return;
+        }
+        // Each arm goes to the end, so that tiles without a skyline keep their sums in registers.
+        match self.skyward(tile) {
+            None => {
+                judging.judge_sums::<W>(&candidates.sums::<W>(tile, &self.mask), out);
+            }
+            Some(points) => {
                 let sums = candidates.sums_skyward::<W>(&points, tile, &judging, out);
-                judging.judge::<W>(&sums, out);
+                judging.judge_sums::<W>(&sums, out);
             }
         }
+    }
+
+    /// The points of a tile under their skylines, if one has any.
+    #[inline(always)]
+    fn skyward<'t>(&'t self, tile: &'t Tile) -> Option<Skyward<'t, f32>> {
+        tile.sky.as_ref().map(|sky| Skyward {
+            sites: &tile.single,
+            sky,
+            mask: &self.mask,
+            slack: self.slack,
+        })
     }
 }
 
@@ -283,11 +239,31 @@ pub(super) struct Judging<'a> {
 
 impl Judging<'_> {
     #[inline(always)]
-    fn judge<W: Weighting>(&self, sums: &Sums<f32>, out: &mut SampleOutcome) {
+    fn judge_sums<W: Weighting>(&self, sums: &Sums<f32>, out: &mut SampleOutcome) {
+        let system = NormalLanes::new::<W>(sums, self.fixed);
+        let mut rounded = ZERO;
+        for l in 0..LANES {
+            rounded.0[l] = sums.rounded::<W>(l);
+        }
+        let leo = LeoLanes {
+            count: &sums.count,
+            possible: &sums.possible,
+            rounded: &rounded,
+        };
+        self.judge::<W>(&system, &leo, out);
+    }
+
+    #[inline(always)]
+    fn judge<W: Weighting>(
+        &self,
+        system: &NormalLanes<f32>,
+        leo: &LeoLanes<'_>,
+        out: &mut SampleOutcome,
+    ) {
         let (number, candidates) = (self.number, self.candidates);
-        let verdict = LaneVerdict::new::<W>(sums, self.fixed, self.limits);
+        let verdict = LaneVerdict::new(system, leo, self.limits);
         out.pdop[number] = verdict.pdop;
-        out.visible[number] = sums.count;
+        out.visible[number] = *leo.count;
         if any(&verdict.doubtful) {
             doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
         }
@@ -305,9 +281,9 @@ fn any(lanes: &Lanes<u32>) -> bool {
 /// The satellites that may be visible from a tile.
 #[derive(Clone, Copy)]
 pub(super) struct TileCandidates<'a> {
-    blocks: &'a [Block],
+    pub(super) blocks: &'a [Block],
     /// A bit for each satellite of the block.
-    words: &'a [u64],
+    pub(super) words: &'a [u64],
 }
 
 impl<'a> TileCandidates<'a> {
@@ -335,7 +311,6 @@ impl<'a> TileCandidates<'a> {
         out: &mut SampleOutcome,
     ) -> Sums<f32> {
         let (mask, positions) = (judging.scene.mask, judging.positions);
-        out.seen.clear();
         let mut all = Sums::about(tile.centre);
         for (block, &word) in self.blocks.iter().zip(self.words) {
             let sights = &mut out.sights[..word.count_ones() as usize];
@@ -384,6 +359,26 @@ impl<'a> TileCandidates<'a> {
         sums
     }
 
+    /// The normal matrix in f64 at the points of a tile, by its number and the positions.
+    #[inline(always)]
+    pub(super) fn double_normal<W: Weighting>(
+        self,
+        scene: &SampleContext,
+        (number, positions): (usize, &Positions),
+        fixed: &FixedTile<'_>,
+    ) -> NormalLanes<f64> {
+        if !W::SEVERAL_CLOCKS {
+            let sums = self.double_sums::<W>(scene, number, positions);
+            return NormalLanes::new::<W>(&sums, fixed);
+        }
+        let mut normal = NormalLanes::of_fixed(fixed);
+        for clock in self.by_clock() {
+            let sums = clock.double_sums::<W>(scene, number, positions);
+            normal.add_clock::<W>(&sums);
+        }
+        normal
+    }
+
     /// Passes the lines in f64 to the satellites to `add`, satellite by satellite and lane by lane, with whether it is visible.
     #[inline(always)]
     pub(super) fn look(
@@ -400,45 +395,41 @@ impl<'a> TileCandidates<'a> {
         }
     }
 
+    /// Those of each clock that has any.
+    #[inline(always)]
+    pub(super) fn by_clock(self) -> impl Iterator<Item = TileCandidates<'a>> {
+        let (blocks, mut words) = (self.blocks, self.words);
+        let of_clock = blocks.chunk_by(|a, b| a.clock() == b.clock());
+        of_clock.map(move |blocks| {
+            let (own, others) = words.split_at(blocks.len());
+            words = others;
+            TileCandidates { blocks, words: own }
+        })
+    }
+
+    /// The number of their clock, if they have one in common.
+    #[inline(always)]
+    pub(super) fn clock(&self) -> usize {
+        self.blocks
+            .first()
+            .map_or(0, |block| block.clock() as usize)
+    }
+
+    #[inline(always)]
+    pub(super) fn count(&self) -> usize {
+        let count = |word: &u64| word.count_ones() as usize;
+        self.blocks
+            .iter()
+            .zip(self.words)
+            .map(|(_, word)| count(word))
+            .sum()
+    }
+
     /// Their indices among all satellites.
     #[inline(always)]
     pub(super) fn satellites(self) -> impl Iterator<Item = usize> + use<'a> {
         let blocks = self.blocks.iter().zip(self.words);
         blocks.flat_map(|(block, &word)| bits(word).map(|n| block.index(n)))
-    }
-}
-
-/// The outcome in f32 at the points of a tile; flags are 0 or 1.
-struct LaneVerdict {
-    pdop: Lanes<f32>,
-    /// Too close to the mask for f32.
-    doubtful: Lanes<u32>,
-    /// PDOP too large for f32, or too close to a threshold.
-    coarse: Lanes<u32>,
-}
-
-impl LaneVerdict {
-    #[inline(always)]
-    fn new<W: Weighting>(sums: &Sums<f32>, fixed: &FixedTile<'_>, limits: &Limits) -> Self {
-        let system = NormalLanes::new::<W>(sums, fixed);
-        let single = system.pdop();
-        let zero = Lanes([0; LANES]);
-        let mut verdict = Self {
-            pdop: Lanes([UNSOLVED; LANES]),
-            doubtful: zero,
-            coarse: zero,
-        };
-        for l in 0..LANES {
-            let pdop = single.0[l];
-            let sure = u32::from(sums.possible.0[l] == sums.count.0[l]);
-            let counted = u32::from(system.surplus.0[l] >= POSITION_STATES);
-            let condition = Limits::condition(pdop, sums.rounded::<W>(l), system.trace(l));
-            let fine = u32::from(limits.holds_in_single(pdop, condition));
-            verdict.pdop.0[l] = if counted != 0 { pdop } else { UNSOLVED };
-            verdict.doubtful.0[l] = 1 - sure;
-            verdict.coarse.0[l] = counted & (1 - fine) & sure;
-        }
-        verdict
     }
 }
 

@@ -2,13 +2,13 @@
 //! geometry too close to a limit: recomputed by the definitions.
 
 use super::super::fixed::{self, PlainGnssSample, PlainPositions};
-use super::super::{Setup, plain};
+use super::super::{Setup, leo, plain};
 use super::fixed::{FixedSample, SampleInstant};
 use super::normal::{FixedTile, clear_pivot};
 use super::sample::{Doubt, POSITION_STATES, SampleContext, SampleOutcome, UNSOLVED, Undecided};
-use crate::dop::{Factor, ObservationWeights, Symmetric3};
+use crate::dop::{Factor, Geometry, ObservationWeights, Symmetric3};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::{EarthFixed, Position, State, Teme};
+use crate::frames::{EarthFixed, Position};
 use crate::ground::Site;
 use nalgebra::Vector3;
 use std::cell::OnceCell;
@@ -55,17 +55,18 @@ impl<'a> Settling<'a> {
         let doubts = std::mem::take(&mut outcome.doubts);
         for undecided in &doubts {
             let Undecided { tile, lane, .. } = *undecided;
-            let site = &self.setup.sites[self.scene.tiles.tiles[tile].members[lane] as usize];
-            let positions = self.candidates(leo, undecided)?;
-            let by_lanes = match undecided.doubt {
-                Doubt::Mask if self.scene.weights == ObservationWeights::Unit => {
-                    self.with_gnss_of_lanes(site, &positions, undecided)
+            let site = self.site(undecided);
+            let clocks = self.candidates(leo, undecided)?;
+            let is_unit = self.scene.weights == ObservationWeights::Unit;
+            let by_lanes = match (undecided.doubt, clocks.as_slice()) {
+                (Doubt::Mask, [positions]) if is_unit => {
+                    self.with_gnss_of_lanes(site, positions, undecided)
                 }
-                Doubt::Mask | Doubt::Geometry => None,
+                (Doubt::Mask | Doubt::Geometry, _) => None,
             };
             let settled = match by_lanes {
                 Some(settled) => settled,
-                None => self.by_plain_sums(site, &positions, systems)?,
+                None => self.by_plain_sums(site, &clocks, systems)?,
             };
             let stored = |pdop: f64| self.scene.limits.available.stored(pdop);
             outcome.pdop[tile].0[lane] = settled.pdop.map_or(UNSOLVED, stored);
@@ -75,29 +76,57 @@ impl<'a> Settling<'a> {
         Ok(())
     }
 
-    /// The positions, by the plain path, of the satellites that a point may see.
+    /// The positions, by the plain path and clock by clock, of the satellites that a point may see.
     fn candidates(
         &self,
         leo: &Ephemeris,
         undecided: &Undecided,
-    ) -> Result<Vec<Position<EarthFixed>>, EphemerisError> {
-        let position = |&n: &u32| {
-            let satellite = &leo.satellites()[n as usize];
-            let state = leo.state_or_gap(satellite, self.instant.elapsed_s);
-            let to_earth_fixed =
-                |state: State<Teme>| self.instant.rotation.to_earth_fixed(state.position_km);
-            state.map(|state| state.map(to_earth_fixed)).transpose()
-        };
-        undecided.satellites.iter().filter_map(position).collect()
+    ) -> Result<Vec<PlainPositions>, EphemerisError> {
+        let mut clocks = leo::no_positions(self.setup, leo);
+        for n in undecided.satellites.iter().map(|&n| n as usize) {
+            let satellite = &leo.satellites()[n];
+            if let Some(state) = leo.state_or_gap(satellite, self.instant.elapsed_s)? {
+                let clock = if clocks.len() > 1 { leo.parts()[n] } else { 0 };
+                clocks[clock].push(self.instant.rotation.to_earth_fixed(state.position_km));
+            }
+        }
+        Ok(clocks)
+    }
+
+    /// The sums of the plain path of an undecided sample.
+    pub(super) fn geometry(
+        &self,
+        leo: &Ephemeris,
+        systems: &[Ephemeris],
+        undecided: &Undecided,
+    ) -> Result<Geometry, EphemerisError> {
+        let clocks = self.candidates(leo, undecided)?;
+        Ok(self.plain_sums(self.site(undecided), &clocks, systems)?.1)
+    }
+
+    fn site(&self, undecided: &Undecided) -> &Site {
+        let members = &self.scene.tiles.tiles[undecided.tile].members;
+        &self.setup.sites[members[undecided.lane] as usize]
     }
 
     /// The sample by the plain path, bit for bit.
     fn by_plain_sums(
         &self,
         site: &Site,
-        positions: &[Position<EarthFixed>],
+        clocks: &[PlainPositions],
         systems: &[Ephemeris],
     ) -> Result<Settled, EphemerisError> {
+        let (visible, geometry) = self.plain_sums(site, clocks, systems)?;
+        let pdop = geometry.pdop(self.setup.pdop_cap);
+        Ok(Settled { visible, pdop })
+    }
+
+    fn plain_sums(
+        &self,
+        site: &Site,
+        clocks: &[PlainPositions],
+        systems: &[Ephemeris],
+    ) -> Result<(u32, Geometry), EphemerisError> {
         let gnss = match self.gnss.get() {
             Some(gnss) => gnss,
             None => {
@@ -111,9 +140,7 @@ impl<'a> Settling<'a> {
             }
         };
         let gnss = PlainGnssSample::new(self.setup, site, gnss);
-        let (visible, geometry) = plain::geometry(self.setup, site, &[positions], &gnss);
-        let pdop = geometry.pdop(self.setup.pdop_cap);
-        Ok(Settled { visible, pdop })
+        Ok(plain::geometry(self.setup, site, clocks, &gnss))
     }
 
     /// The sample with the mask decided by the plain path and the GNSS part from the lanes; `None` if

@@ -5,9 +5,8 @@
 //! Bins are equal parts not of the azimuth but of the position on the square |e| + |n| = 1, which needs no
 //! trigonometric function.
 
-use super::lanes::{
-    LANES, Lanes, LineLanes, MaskTerms, Real, SightLine, SiteLanes, Sums, Weighting,
-};
+use super::lanes::{LANES, Lanes, LineLanes, MaskTerms, Real, SightLine, SiteLanes, Sums};
+use super::weighting::Weighting;
 use crate::frames::Position;
 use crate::ground::Site;
 use crate::visibility::{Mask, MaskTable};

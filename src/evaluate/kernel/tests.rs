@@ -5,7 +5,7 @@ use super::tiles::{Horizon, Tiles};
 use super::*;
 use crate::constellation::gnss::Preset;
 use crate::constellation::{Design, Orientation, Pattern, Shell, ShellParameters};
-use crate::dop::{Clocks, ObservationWeights};
+use crate::dop::{Clocks, LeoClocks, ObservationWeights};
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::EphemerisSatellite;
 use crate::evaluate::tests::setup;
@@ -22,10 +22,13 @@ use crate::visibility::{Mask, MaskTable};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
+mod clocks;
+mod culling;
 mod decisions;
 mod limits;
 mod propagated;
 mod tiled;
+mod windows;
 
 fn relative(ours: Option<f64>, theirs: Option<f64>) -> f64 {
     match (ours, theirs) {
@@ -205,11 +208,12 @@ fn setups() -> impl Strategy<Value = Setup> {
     ]);
     let caps = prop::sample::select(vec![(100.0, 6.0), (1.9, 1.2), (8.0, 2.0)]);
     let weights = prop::sample::select(ObservationWeights::ALL.to_vec());
+    let leo_clocks = prop::sample::select(LeoClocks::ALL.to_vec());
     (
         points(),
         mask,
         0.0..30.0_f64,
-        clocks,
+        (clocks, leo_clocks),
         gnss,
         (caps, weights),
         0..40_000_u32,
@@ -228,7 +232,8 @@ fn setups() -> impl Strategy<Value = Setup> {
                     .with_mask(Mask::from_degrees(mask).unwrap())
                     .with_gnss_mask(Mask::from_degrees(gnss_mask).unwrap())
                     .with_gnss(gnss)
-                    .with_clocks(clocks)
+                    .with_clocks(clocks.0)
+                    .with_leo_clocks(clocks.1)
                     .with_observation_weights(weights)
                     .with_pdop_cap(pdop_cap)
                     .with_metrics(metrics)
@@ -462,38 +467,4 @@ fn streaming_equals_keeping() {
         let kept_dops = kept.dops(&ephemeris).unwrap();
         compare_dops(&streamed.dops(&ephemeris).unwrap(), &kept_dops, 1e-6).unwrap();
     }
-}
-
-/// Number of satellites tested for a point, and number visible, in the paper's scenario.
-#[test]
-fn regress_culling_looks_at_twice_what_is_seen() {
-    let setup = setup([3.0, 54.0], Surface::Sphere);
-    let design: Design = "delta:55:182/13/1@925".parse().unwrap();
-    let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
-    let propagation = PatternPropagator::new(&ephemeris.shells()[0]).unwrap();
-    let weights = WholeWeights::new(&setup);
-    let tiles = Tiles::new(&setup.sites, &weights, setup.mask, setup.gnss_mask);
-    assert_eq!((tiles.tiles.len(), tiles.groups.len()), (9, 1));
-    let count = design.satellite_count();
-    let mut positions = Positions::new(count);
-    let mut all = Candidates::with_capacity(count);
-    let mut looked_at = 0;
-    for elapsed_s in setup.grid.iter() {
-        let rotation = EarthRotation::from_gmst(setup.grid.epoch().gmst_rad(elapsed_s));
-        propagation.place_at(&propagation.turn(elapsed_s, rotation), &mut positions);
-        all.fill(&positions, &tiles.horizon);
-        let slack_km = Horizon::cap_slack_km(&positions);
-        for (tile, block) in tiles
-            .tiles
-            .iter()
-            .flat_map(|tile| all.blocks().iter().map(move |block| (tile, block)))
-        {
-            looked_at += u64::from(block.inside(&tile.cap, slack_km).count_ones());
-        }
-    }
-    let per_sample = looked_at as f64 / setup.grid.len() as f64 / tiles.tiles.len() as f64;
-    let evaluator = Evaluator::new(setup).unwrap();
-    let seen = evaluator.evaluate(&design).unwrap().mean_visible;
-    // 16.6 for 7.84; a worse partition into tiles shows here before it shows in the run time.
-    assert!((2.0..2.2).contains(&(per_sample / seen)), "{per_sample}");
 }

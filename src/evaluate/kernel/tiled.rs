@@ -40,7 +40,7 @@ impl Kernel {
         instants: Range<usize>,
         mut put: impl FnMut(&[u8]) -> io::Result<()>,
     ) -> Result<[ViewBins; 2], E> {
-        let propagation = &Propagation::new(ephemeris);
+        let propagation = &self.propagation(ephemeris);
         let mut bins = [ViewBins::default(), ViewBins::default()];
         // A piece for each thread is in memory; their number moves no byte.
         for together in self.pieces(instants).chunks(rayon::current_num_threads()) {
@@ -90,7 +90,7 @@ impl Kernel {
                 self.count(chunk, &mut counts)
             })?;
             let sum = sums.iter().sum();
-            self.summary_of_kept(&Propagation::new(ephemeris), &values, (&counts, sum))?
+            self.summary_of_kept(&self.propagation(ephemeris), &values, (&counts, sum))?
         } else {
             let sums = self.by_chunk(read, |chunk| {
                 self.tally_chunk(chunk, &mut tally);

@@ -64,12 +64,20 @@ fn the_shortest_and_the_longest_window() {
     let metrics = Evaluator::new(setup.clone()).unwrap();
     let metrics = metrics.evaluate_plain(&ephemeris).unwrap();
     for window_s in [1.0, 120.0] {
-        let one = information(setup.clone().with_window_s(window_s), &ephemeris);
+        let setup = setup.clone().with_window_s(window_s);
+        let one = Evaluator::new(setup.clone()).unwrap();
+        let one = one.information_pdop_plain(&ephemeris).unwrap();
         assert_eq!((one.mean, one.p95), (metrics.mean_pdop, metrics.p95_pdop));
         assert_eq!(
             (one.cvar, one.solved_fraction),
             (metrics.cvar_pdop, metrics.solved_fraction)
         );
+        let by_lanes = information(setup, &ephemeris);
+        assert_eq!(by_lanes.solved_fraction, one.solved_fraction);
+        for (ours, theirs) in [(by_lanes.mean, one.mean), (by_lanes.cvar, one.cvar)] {
+            // Lines of sight are good to 2e-14.
+            assert!((ours.unwrap() / theirs.unwrap() - 1.0).abs() < 1e-12);
+        }
     }
     let whole = information(setup.clone().with_window_s(2400.0), &ephemeris);
     // The mean of two values with weights 1 and 2 is below the larger one, which is the 95 % quantile.

@@ -22,12 +22,12 @@
     return ranges.get(measure);
   }
 
-  const build = ({ measure, label, lessIsBetter }) => (colours) => {
+  const build = (id, { measure, label, lessIsBetter }) => (colours) => {
     const all = cutsOf(state.place)?.instants?.[measure];
     const values = all ? at(all, shown()) : data.region.latitude_deg.map(() => null);
-    return Maps.drawn({ values, label, lessIsBetter, range: Maps.isCommon() ? common(measure) : Maps.rangeOf([values]) }, colours);
+    return Maps.drawn({ id, values, label, lessIsBetter, range: Maps.isCommon() ? common(measure) : Maps.rangeOf([values]) }, colours);
   };
-  for (const [id, map] of Object.entries(MAPS)) figure(id, { build: build(map) });
+  for (const [id, map] of Object.entries(MAPS)) figure(id, { build: build(id, map) });
 
   /** Says the instant, to those who hear the page as well. */
   function tell() {

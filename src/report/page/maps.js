@@ -62,6 +62,29 @@ const Maps = (() => {
   /** Most sites whose names are on a map. */
   const MOST_NAMES = 40;
 
+  /** Sides of a site on which its name may be, the best first: across and down from its mark. */
+  const SIDES = [["top center", 0, -1], ["bottom center", 0, 1], ["middle right", 1, 0], ["middle left", -1, 0]];
+
+  /** On which side of its site each name goes so that none covers another; null for one that has no room. */
+  function sidesOfNames(region, id) {
+    const [south, north, west, east] = region.bounds;
+    const shrunk = Math.max(0.1, Math.cos((south + north) / 2 * Math.PI / 180));
+    // Pixels of a degree of longitude, without margins and colours.
+    const { width, height } = document.getElementById(id).getBoundingClientRect();
+    const each = Math.min((width - 150) / (east - west), (height - 60) / (north - south) * shrunk);
+    const taken = [];
+    const isTaken = (box) => taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3]);
+    return region.name.map((name, n) => {
+      if (name === "") return null;
+      const x = region.longitude_deg[n] * each, y = -region.latitude_deg[n] / shrunk * each, half = 3 * name.length + 2;
+      const box = ([, across, down]) => [x + across * (half + 8) - half, y + down * 14 - 7, x + across * (half + 8) + half, y + down * 14 + 7];
+      const side = SIDES.find((side) => !isTaken(box(side)));
+      if (!side) return null;
+      taken.push(box(side));
+      return side[0];
+    });
+  }
+
   /** Columns of the raster that shows cells of equal area. */
   const COLUMNS = 720;
 
@@ -99,12 +122,12 @@ const Maps = (() => {
     const every = () => Core.withCuts.map((place) => cutsOf(place).maps[name]);
     return (colours) => {
       const values = cutsOf(state.place)?.maps[name] ?? data.region.latitude_deg.map(() => null);
-      return drawn({ values, label: LABELS[name], lessIsBetter: LESS_IS_BETTER.includes(name),
+      return drawn({ id: "map-" + name, values, label: LABELS[name], lessIsBetter: LESS_IS_BETTER.includes(name),
         range: rangeOf(isCommon() ? every() : [values]) }, colours);
     };
   }
 
-  /** A map of some values, point by point. */
+  /** A map of some values, point by point, for the element of this id. */
   function drawn(shown, colours) {
     const { region } = data, { values } = shown;
     const { shade, ends: [low, high], scale, bar } = colouring(shown, colours);
@@ -119,8 +142,10 @@ const Maps = (() => {
       traces.push({ ...cells(lattice(region, values)), hovertemplate: "%{y}° N, %{x}° E<br>%{customdata:.5~g}<extra></extra>" });
     } else {
       const isNamed = region.name.length <= MOST_NAMES && region.name.some((name) => name !== "");
+      const sides = isNamed ? sidesOfNames(region, shown.id) : [];
       traces.push({ type: "scatter", mode: isNamed ? "markers+text" : "markers", x: region.longitude_deg, y: region.latitude_deg,
-        ...(isNamed && { texttemplate: "%{customdata}", customdata: region.name.map(plain), textposition: "top center", textfont: { size: 10 } }),
+        ...(isNamed && { texttemplate: "%{customdata}", customdata: region.name.map((name, n) => sides[n] ? plain(name) : ""),
+          textposition: sides.map((side) => side ?? "top center"), textfont: { size: 10 } }),
         marker: { size: 12, color: values.map(shade), ...scale, colorbar: bar, cmin: low, cmax: high,
           line: { width: 1, color: colours.ink } },
         text: values.map((v, n) => (region.name[n] ? plain(region.name[n]) + "<br>" : "") + digits(v)), hovertemplate: "%{y}° N, %{x}° E<br>%{text}<extra></extra>" });

@@ -75,7 +75,7 @@ impl<'a> TileWork<'a> {
             ..plan(study, evaluator, described)?
         };
         let leo = constellations::propagate(constellation, evaluator.setup())?;
-        evaluator.require_divisible(&leo)?;
+        evaluator.require_divisible()?;
         Ok(Self {
             evaluator,
             plan,

@@ -1,8 +1,9 @@
 //! The geometry of a tile, from which satellites are taken away.
 
-use super::super::lanes::{LANES, Lanes, Sums, Weighting};
+use super::super::lanes::{LANES, Lanes, Sums};
 use super::super::normal::{FixedTile, NormalLanes, at};
 use super::super::sample::POSITION_STATES;
+use super::super::weighting::Weighting;
 use super::sky::LaneSight;
 
 /// A geometry is good where the determinant of its normal matrix exceeds this share of its cubed trace (1/27 is the most

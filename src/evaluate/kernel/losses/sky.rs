@@ -1,9 +1,10 @@
 //! The satellites in view of the points of a tile.
 
-use super::super::lanes::{SightLine, Weighting};
+use super::super::lanes::SightLine;
 use super::super::sample::SampleContext;
 use super::super::skylines::{SightSlack, Skyward, TileSky};
 use super::super::tiles::Tile;
+use super::super::weighting::Weighting;
 use super::{LANES, Lanes};
 
 /// A satellite that some points of a tile see.

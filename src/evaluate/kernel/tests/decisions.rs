@@ -43,6 +43,17 @@ fn planted(setup: &Setup, direction: impl Fn(usize) -> (f64, f64)) -> Ephemeris 
     )
 }
 
+/// Two shells, with a clock each where asked for.
+pub(super) const HYBRID: &str = "delta:53:104/8/1@1000+star:87:78/6/1@1100";
+
+/// Two satellites at rest in the sight of the points around the middle of the region.
+pub(super) fn planted_pair(setup: &Setup) -> Ephemeris {
+    let all = planted(setup, |n| (90.0 * n as f64, 60.0)).into_satellites();
+    let middle = setup.sites.len() / 2;
+    let pair = all.into_iter().skip(middle).take(2).collect();
+    Ephemeris::new(setup.grid, pair)
+}
+
 /// Ten instants of the region.
 fn short_setup() -> Setup {
     let base = setup([3.0, 54.0], Surface::Wgs84);
@@ -183,7 +194,7 @@ fn satellites_just_above_the_ground_are_decided_in_f64() {
 }
 
 /// PDOP of 200 instants, tile by tile, with f32 trusted so far, and how many values are made in f64.
-fn values(
+pub(super) fn values(
     kernel: &Kernel,
     ephemeris: &Ephemeris,
     single: SingleLimits,
@@ -197,7 +208,7 @@ fn values(
         all.extend(instant.outcome.pdop.iter().map(|tile| tile.0));
         Ok(())
     };
-    let propagation = &Propagation::new(ephemeris);
+    let propagation = &kernel.propagation(ephemeris);
     let rechecks = kernel.run(propagation, 0..200, limits, take).unwrap();
     (all, rechecks.large_pdop as f64)
 }
@@ -208,14 +219,18 @@ fn points_alone_in_f64_equal_whole_tiles() {
     let (unit, sine) = (ObservationWeights::Unit, ObservationWeights::SineElevation);
     let skyline = Some(street());
     let (mut alone, mut together) = (0, 0);
-    for (clocks, weights, skyline, below) in [
-        (Clocks::PerSystem, unit, None, 1.3),
-        (Clocks::PerSystem, unit, skyline.clone(), 2.0),
-        (Clocks::Shared, unit, skyline.clone(), 2.0),
-        (Clocks::Shared, sine, skyline, 4.0),
+    let single = "delta:55:182/13/1@925";
+    for (text, clocks, weights, skyline, below) in [
+        (single, Clocks::PerSystem, unit, None, 1.3),
+        (single, Clocks::PerSystem, unit, skyline.clone(), 2.0),
+        (single, Clocks::Shared, unit, skyline.clone(), 2.0),
+        (single, Clocks::Shared, sine, skyline.clone(), 4.0),
+        (HYBRID, Clocks::PerSystem, unit, None, 1.4),
+        (HYBRID, Clocks::PerSystem, sine, skyline, 5.0),
     ] {
         let setup = Setup {
             clocks,
+            leo_clocks: LeoClocks::PerPart,
             observation_weights: weights,
             ..setup([3.0, 54.0], Surface::Wgs84)
         };
@@ -223,7 +238,7 @@ fn points_alone_in_f64_equal_whole_tiles() {
             Some(skyline) => setup.with_skyline(skyline),
             None => setup,
         };
-        let design: Design = "delta:55:182/13/1@925".parse().unwrap();
+        let design: Design = text.parse().unwrap();
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
         let kernel = &evaluator.kernel;
@@ -262,11 +277,14 @@ fn single_values_hold_six_digits() {
         ("delta:55:182/13/1@925", Clocks::PerSystem, sine),
         ("delta:45:600/15/1@400", Clocks::Shared, sine),
         ("delta:50:3000/50/1@1400", Clocks::PerSystem, sine),
+        (HYBRID, Clocks::PerSystem, unit),
+        (HYBRID, Clocks::PerSystem, sine),
     ] {
         let design: Design = text.parse().unwrap();
         let setup = Setup {
             mask: Mask::from_degrees(0.0).unwrap(),
             clocks,
+            leo_clocks: LeoClocks::PerPart,
             observation_weights: weights,
             ..setup([3.0, 54.0], Surface::Wgs84)
         };

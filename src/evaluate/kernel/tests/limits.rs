@@ -1,7 +1,7 @@
 //! Where the lanes may decide, and where the plain path does.
 
-use super::super::lanes::UnitWeights;
 use super::super::limits::{Limits, SingleLimits};
+use super::super::weighting::UnitWeights;
 use super::decisions::street;
 use super::{Surface, Threshold, setup};
 use std::sync::Arc;

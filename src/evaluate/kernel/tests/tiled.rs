@@ -70,16 +70,19 @@ fn merged(
 #[test]
 fn tiles_have_the_bits_of_the_whole() {
     let (setup, leo) = study();
+    let setup = setup.with_leo_clocks(LeoClocks::PerPart);
+    let parts = (0..60).map(|n| n / 40).collect();
+    let clocks = Ephemeris::new(setup.grid, study().1.into_satellites()).with_parts(parts);
     let none = Ephemeris::new(setup.grid, Vec::new());
-    for keeps in [true, false] {
+    for (keeps, leo) in [(true, &leo), (false, &leo), (true, &clocks)] {
         let whole = evaluator(&setup, keeps);
-        let expected = [&none, &leo].map(|one| whole.evaluate_views(one).unwrap());
+        let expected = [&none, leo].map(|one| whole.evaluate_views(one).unwrap());
         let metrics = expected[1].0;
         assert!(metrics.solved_fraction < 1.0 && metrics.availability > 0.1);
         assert!(metrics.longest_outage_s > 1200.0);
         for cuts in [vec![0, 36], vec![0, 1, 2, 20, 36], (0..=36).collect()] {
             let joined = evaluator(&setup, keeps);
-            let found = [&none, &leo].map(|one| {
+            let found = [&none, leo].map(|one| {
                 let tiles = in_tiles((&setup, keeps), one, &cuts).unwrap();
                 merged(&joined, one, &tiles).unwrap()
             });

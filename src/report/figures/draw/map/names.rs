@@ -46,6 +46,7 @@ pub(super) fn draw(
     let inside = [frame.left, frame.top, frame.right, frame.bottom];
     let away = sheet.em(SITE + 0.25);
     for (name, rect) in names.iter().zip(placed(places, &sizes, inside, away)) {
+        let Some(rect) = rect else { continue };
         if !name.is_empty() {
             let at = (rect[0], (rect[1] + rect[3]) / 2);
             let style = sheet.font().pos(Pos::new(HPos::Left, VPos::Center));
@@ -55,13 +56,19 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// Where each name goes: the side with the least overlap with sites, names before it and what is outside.
-fn placed(places: &[(i32, i32)], sizes: &[(i32, i32)], inside: Rect, away: i32) -> Vec<Rect> {
-    let mut taken: Vec<Rect> = places
+/// Where each name goes: the side with the least overlap with sites and what is outside. A name that would cover one before it
+/// on every side has no place.
+fn placed(
+    places: &[(i32, i32)],
+    sizes: &[(i32, i32)],
+    inside: Rect,
+    away: i32,
+) -> Vec<Option<Rect>> {
+    let sites: Vec<Rect> = places
         .iter()
         .map(|(x, y)| [x - away, y - away, x + away, y + away])
         .collect();
-    let mut found = Vec::new();
+    let mut found: Vec<Option<Rect>> = Vec::new();
     for (&(x, y), &(width, height)) in places.iter().zip(sizes) {
         let at = |(across, down): (i32, i32)| {
             let left = x + match across {
@@ -76,18 +83,13 @@ fn placed(places: &[(i32, i32)], sizes: &[(i32, i32)], inside: Rect, away: i32) 
         let cost = |rect: &Rect| {
             let whole = i64::from(width) * i64::from(height);
             let outside = whole - overlap(*rect, inside);
-            outside * 4
-                + taken
-                    .iter()
-                    .map(|other| overlap(*rect, *other))
-                    .sum::<i64>()
+            let hidden = sites.iter().map(|site| overlap(*rect, *site));
+            outside * 4 + hidden.sum::<i64>()
         };
-        let best = SIDES
-            .map(at)
-            .into_iter()
-            .min_by_key(cost)
-            .unwrap_or([x, y, x, y]);
-        taken.push(best);
+        let before = found.iter().flatten();
+        let is_free = |rect: &Rect| before.clone().all(|other| overlap(*rect, *other) == 0);
+        let free = SIDES.map(at).into_iter().filter(is_free);
+        let best = free.min_by_key(cost);
         found.push(best);
     }
     found
@@ -109,8 +111,20 @@ mod tests {
         let places = [(100, 100), (150, 100), (980, 400)];
         let sizes = [(80, 10); 3];
         let found = placed(&places, &sizes, [0, 0, 1000, 1000], 8);
-        assert_eq!(found[0], [12, 95, 92, 105]);
-        assert_eq!(found[1], [158, 95, 238, 105]);
-        assert!(found[2][2] < 980);
+        assert_eq!(found[0], Some([12, 95, 92, 105]));
+        assert_eq!(found[1], Some([158, 95, 238, 105]));
+        assert!(found[2].unwrap()[2] < 980);
+    }
+
+    /// Of many sites in one place, as many have their names as there is room for, the first ones, and none covers another.
+    #[test]
+    fn names_do_not_cover_each_other() {
+        let places = [(500, 500); 12];
+        let found = placed(&places, &[(80, 10); 12], [0, 0, 1000, 1000], 8);
+        let shown: Vec<Rect> = found.iter().flatten().copied().collect();
+        assert!(found[0].is_some() && (2..12).contains(&shown.len()));
+        for (n, rect) in shown.iter().enumerate() {
+            assert!(shown[..n].iter().all(|other| overlap(*rect, *other) == 0));
+        }
     }
 }
