@@ -3,8 +3,9 @@
 use crate::columns::Columns;
 use crate::constellation::NativeConstellation;
 use crate::design_columns::{self, Evaluated};
-use crate::errors::{self, DesignError, NavwalkerError, ScenarioError};
+use crate::errors::{self, DesignError, NavwalkerError};
 use crate::interruptible::{Shared, Tick, on_pool};
+use crate::metrics::dictionary;
 use crate::states;
 use navwalker::cli::embedded::{self, PackedStudy, ScenarioText, Study, error_text};
 use navwalker::constellation::{Pattern, Shell, ShellParameters};
@@ -13,7 +14,6 @@ use navwalker::exchange::constellation::Constellation;
 use navwalker::frames::Frame;
 use navwalker::ground::Site;
 use navwalker::report::records_csv;
-use navwalker::run::metric_values;
 use navwalker::run::typed_columns::{ColumnKind, TypedColumns};
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -54,27 +54,37 @@ impl Engine {
 
     /// The evaluator, unless one evaluation is very large.
     pub(crate) fn evaluator(&self, py: Python<'_>) -> PyResult<Arc<Evaluator>> {
-        let evaluator = self.evaluator_in_tiles(py)?;
-        if self.is_whole.get().is_none() {
-            embedded::require_whole(evaluator.setup()).map_err(|error| {
-                let flags = "--allow-large, or evaluate --tile I/N";
-                ScenarioError::new_err(error_text(&error).replace(flags, "evaluate(…, tiles=N)"))
-            })?;
-            self.is_whole.get_or_init(|| ());
-        }
+        let evaluator = match self.evaluator.get() {
+            Some(known) if self.is_whole.get().is_some() => return Ok(Arc::clone(known)),
+            Some(known) => {
+                embedded::require_whole(known.setup()).map_err(|error| errors::refused(&error))?;
+                Arc::clone(known)
+            }
+            // Refused before it is made, which takes long if it is very large.
+            None => self.made(py, Study::evaluator)?,
+        };
+        self.is_whole.get_or_init(|| ());
         Ok(evaluator)
     }
 
     /// The evaluator for evaluations in tiles, of any size.
     pub(crate) fn evaluator_in_tiles(&self, py: Python<'_>) -> PyResult<Arc<Evaluator>> {
-        if let Some(known) = self.evaluator.get() {
-            return Ok(Arc::clone(known));
+        match self.evaluator.get() {
+            Some(known) => Ok(Arc::clone(known)),
+            None => self.made(py, Study::evaluator_in_tiles),
         }
+    }
+
+    fn made(
+        &self,
+        py: Python<'_>,
+        make: fn(&Study) -> anyhow::Result<Evaluator>,
+    ) -> PyResult<Arc<Evaluator>> {
         let study = self.study().clone();
-        let make = move |_: &Shared| embedded::noting(|| study.evaluator_in_tiles());
-        let (made, printed) = on_pool(py, self.threads, None, make)?;
+        let work = move |_: &Shared| embedded::noting(|| make(&study));
+        let (made, printed) = on_pool(py, self.threads, None, work)?;
         errors::warn(py, &printed)?;
-        let made = Arc::new(made.map_err(|error| errors::scenario(&error))?);
+        let made = Arc::new(made.map_err(|error| errors::refused(&error))?);
         Ok(Arc::clone(self.evaluator.get_or_init(|| made)))
     }
 
@@ -483,22 +493,4 @@ impl Engine {
         let array = numpy::PyArrayMethods::reshape(&array, [names.len(), instants, 3])?;
         Ok((array, names))
     }
-}
-
-/// Metrics as a dictionary; a metric without a value is None.
-pub(crate) fn dictionary<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Bound<'py, PyDict>> {
-    let dictionary = PyDict::new(py);
-    let values =
-        metric_values(metrics).map_err(|error| NavwalkerError::new_err(error.to_string()))?;
-    for (name, value) in values {
-        match value {
-            Value::Bool(truth) => dictionary.set_item(name, truth)?,
-            Value::Number(number) => match number.as_i64() {
-                Some(whole) if name == "least_visible" => dictionary.set_item(name, whole)?,
-                _ => dictionary.set_item(name, number.as_f64())?,
-            },
-            _ => dictionary.set_item(name, py.None())?,
-        }
-    }
-    Ok(dictionary)
 }

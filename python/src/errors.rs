@@ -55,6 +55,12 @@ pub(crate) fn scenario(error: &anyhow::Error) -> PyErr {
     ScenarioError::new_err(error_text(error))
 }
 
+/// An error of a scenario, with what Python has in place of flags.
+pub(crate) fn refused(error: &anyhow::Error) -> PyErr {
+    let flags = "--allow-large, or evaluate --tile I/N";
+    ScenarioError::new_err(error_text(error).replace(flags, "evaluate(…, tiles=N)"))
+}
+
 /// An error of a constellation.
 pub(crate) fn design(error: &anyhow::Error) -> PyErr {
     DesignError::new_err(error_text(error))

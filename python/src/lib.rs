@@ -10,6 +10,7 @@ mod design_columns;
 mod engine;
 mod errors;
 mod interruptible;
+mod metrics;
 mod pools;
 mod search;
 mod sky;

@@ -1,9 +1,10 @@
 //! One evaluation in tiles that are evaluated anywhere.
 
 use crate::constellation::NativeConstellation;
-use crate::engine::{Engine, dictionary};
+use crate::engine::Engine;
 use crate::errors::{self, NavwalkerError};
 use crate::interruptible::{Shared, on_pool};
+use crate::metrics::dictionary;
 use navwalker::cli::embedded;
 use navwalker::run::VERSION;
 use pyo3::prelude::*;

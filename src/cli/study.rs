@@ -1,5 +1,7 @@
 //! From the command line to a scenario and its inputs.
 
+mod outages;
+
 use crate::cli::args::{ScenarioText, StudyArgs};
 use crate::cli::{files, limits, output};
 use crate::constellation::Design;
@@ -78,31 +80,6 @@ impl Study {
     pub fn of_text(of: &ScenarioText, overrides: &[String]) -> Result<Self> {
         let written = Written::new(&of.label, of.text.as_bytes().to_vec(), overrides, &[]);
         Self::parse(written, of.directory.clone(), None)
-    }
-
-    /// The same with further satellites out of service throughout.
-    pub(crate) fn without(self, args: &StudyArgs, satellites: &[String]) -> Result<Self> {
-        match self.taking_out(satellites)? {
-            Some(key) => Self::load(args, &[key]),
-            None => Ok(self),
-        }
-    }
-
-    /// The key of further satellites that are out of service throughout, beside those of the scenario; `None` without any.
-    pub(crate) fn taking_out(&self, satellites: &[String]) -> Result<Option<String>> {
-        if satellites.is_empty() {
-            return Ok(None);
-        }
-        let mut all = self.scenario.outages.satellites.clone();
-        for name in satellites {
-            if !all.contains(name) {
-                all.push(name.clone());
-            }
-        }
-        Ok(Some(format!(
-            "outages.satellites={}",
-            serde_json::to_string(&all)?
-        )))
     }
 
     /// The scenario of a run, which names the run's own copies of its files.

@@ -520,13 +520,7 @@ fn an_export_leaves_out_what_is_out_of_service() {
     let place = TempDir::new().unwrap();
     let design = ["--design", "B=delta:53:12/3/1@1000+star:90:4/2/1@1100"];
     let export = |out: &str, more: &[&str]| {
-        let products = [
-            "export",
-            "--as",
-            "tle,csv,oem,stk-scenario,czml",
-            "--out",
-            out,
-        ];
+        let products = ["export", "--as", "tle,csv,oem,stk,czml", "--out", out];
         let ran = ran(
             place.path(),
             &with(&[&products[..], &design[..], more].concat()),
