@@ -31,9 +31,10 @@ pub(crate) fn tile_jobs<'py>(
             "tiles is {tiles}, expected 1 to {instants}, one for each instant"
         )));
     };
-    let ephemeris = one.propagate(evaluator.setup());
-    let ephemeris = ephemeris.map_err(|error| errors::design(&error))?;
-    let divisible = evaluator.require_divisible(&ephemeris);
+    // A tile would refuse it as well, but somewhere else and later.
+    one.propagate(evaluator.setup())
+        .map_err(|error| errors::design(&error))?;
+    let divisible = evaluator.require_divisible();
     divisible.map_err(|error| errors::scenario(&error.into()))?;
     let stamp = engine.study().for_sweep().and_then(|study| study.stamp());
     let hash = stamp.map_err(|error| errors::scenario(&error))?.hash;
