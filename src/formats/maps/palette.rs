@@ -22,6 +22,7 @@ impl Palette {
         let has_others = slots().any(|slot| slot.is_none());
         let counted = |of: fn(Slot) -> usize| slots().flatten().map(|slot| of(slot) + 1).max();
         let shells = counted(|slot| slot.shell.unwrap_or(0)).unwrap_or(0);
+        let shells = shells.max(ephemeris.shells().len());
         let planes = counted(|slot| slot.plane);
         Self {
             planes: planes.filter(|_| shells == 1 && !has_others),
