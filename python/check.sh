@@ -1,13 +1,10 @@
 #!/usr/bin/env bash
-# check.sh DIR [PROFILE]
-#
 # Builds the source distribution and the wheel, installs that into a clean virtual environment and runs its tests, types, doctests and
-# notebooks; the reference of the module goes to DIR/reference. The wheel is built in the checkout, whose build of this profile
-# (release if none is given) it shares; that the source distribution has the same sources is compared.
+# notebooks; the reference of the module goes to DIR/reference. The wheel is built in the checkout, whose release build it shares; that
+# the source distribution has the same sources is compared.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 work="${1:?a directory to work in}"
-profile="${2:-release}"
 mkdir -p "$work"
 python3 -m venv "$work/venv"
 bin="$work/venv/bin"
@@ -19,7 +16,7 @@ for needed in src data build.rs Cargo.lock python/src; do
     diff --recursive --brief --exclude __pycache__ --exclude '*.so' "$needed" "$work/unpacked/$needed"
 done
 diff --recursive --brief --exclude __pycache__ --exclude '*.so' python/navwalker "$work/unpacked/navwalker"
-"$bin/maturin" build --quiet --profile "$profile" --locked --manifest-path python/Cargo.toml --out "$work/dist"
+"$bin/maturin" build --quiet --release --locked --manifest-path python/Cargo.toml --out "$work/dist"
 "$bin/pip" install --quiet --disable-pip-version-check "$work"/dist/*.whl
 "$bin/python" -c 'import navwalker as nw; print(nw.Scenario("paper", time_step_s=1800).evaluate("delta:55:182/13/1@925").mean_pdop)'
 "$bin/python" -m navwalker --version

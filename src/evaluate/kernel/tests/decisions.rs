@@ -21,7 +21,7 @@ impl Propagator for Hovering {
 }
 
 /// Satellites at rest in the sight of one point each, at 1500 km, in these directions: azimuth and elevation, degrees.
-fn planted(setup: &Setup, direction: impl Fn(usize) -> (f64, f64)) -> Ephemeris {
+pub(super) fn planted(setup: &Setup, direction: impl Fn(usize) -> (f64, f64)) -> Ephemeris {
     let satellite = |(n, site): (usize, &Site)| {
         let (azimuth_deg, elevation_deg) = direction(n);
         let (sin_a, cos_a) = azimuth_deg.to_radians().sin_cos();
@@ -55,7 +55,7 @@ pub(super) fn planted_pair(setup: &Setup) -> Ephemeris {
 }
 
 /// Ten instants of the region.
-fn short_setup() -> Setup {
+pub(super) fn short_setup() -> Setup {
     let base = setup([3.0, 54.0], Surface::Wgs84);
     Setup {
         grid: TimeGrid::new(base.grid.epoch(), 600.0, 60.0).unwrap(),

@@ -75,3 +75,19 @@ fn only_singular_windows_are_left_open() {
     let moving = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
     assert_eq!(open(&setup, &moving).0, 0);
 }
+
+/// Satellites within some units in the last place of the mask, whose decisions turn with the order of a sum, and which change
+/// PDOP by far more than its tolerance.
+#[test]
+fn windows_at_the_mask_are_those_of_the_plain_path() {
+    let setup = decisions::short_setup().with_window_s(180.0);
+    let elevation_deg = |n: usize| 7.0 + (n % 7) as f64 * 1e-14 - 3e-14;
+    let ephemeris = decisions::planted(&setup, |n| (57.0 * n as f64, elevation_deg(n)));
+    let evaluator = Evaluator::new(setup).unwrap();
+    let fast = evaluator.information_pdop(&ephemeris).unwrap().unwrap();
+    compare_windows(
+        &fast,
+        &evaluator.information_pdop_plain(&ephemeris).unwrap(),
+    )
+    .unwrap();
+}
