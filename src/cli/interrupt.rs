@@ -21,6 +21,9 @@ const ASKS: u8 = 1;
 /// It has asked, and ends the program at once if pressed again.
 const ASKED: u8 = 2;
 
+/// Times that a directory is emptied which other threads fill.
+const MOST_ATTEMPTS: usize = 100;
+
 /// Installs the Ctrl-C handler; if that fails, Ctrl-C ends the program as usual.
 pub(crate) fn install() {
     let _ = ctrlc::set_handler(|| {
@@ -31,12 +34,21 @@ pub(crate) fn install() {
             return;
         }
         let staged = held();
-        for path in staged.iter() {
-            // If removal fails, the next process that writes there removes it as stale.
-            let _ = fs::remove_file(path).or_else(|_| fs::remove_dir_all(path));
-        }
+        staged.iter().for_each(|path| remove(path));
         std::process::exit(Status::Interrupted as i32);
     });
+}
+
+/// Removes a staged file or directory. Other threads may still create files in the directory while it is emptied; once it is gone
+/// they cannot.
+fn remove(path: &Path) {
+    for _ in 0..MOST_ATTEMPTS {
+        let removed = fs::remove_file(path).or_else(|_| fs::remove_dir_all(path));
+        if removed.is_ok() || !path.exists() {
+            return;
+        }
+    }
+    // The next process that writes there removes it as stale.
 }
 
 /// Asks a search to stop after the current generation, as the first Ctrl-C does; without one it does nothing.
