@@ -76,6 +76,21 @@ impl Symmetric3 {
     }
 }
 
+/// In the order of the fields.
+impl From<[f64; 6]> for Symmetric3 {
+    #[inline(always)]
+    fn from([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Self {
+        Self {
+            xx,
+            yy,
+            zz,
+            xy,
+            xz,
+            yz,
+        }
+    }
+}
+
 impl AddAssign for Symmetric3 {
     fn add_assign(&mut self, other: Self) {
         self.xx += other.xx;

@@ -190,15 +190,7 @@ impl RangeLanes {
         if !is_solved {
             return RangeNormal::Unsolved;
         }
-        let [xx, yy, zz, xy, xz, yz] = at(&self.normal, lane);
-        let factor = Factor::new(&Symmetric3 {
-            xx,
-            yy,
-            zz,
-            xy,
-            xz,
-            yz,
-        });
+        let factor = Factor::new(&Symmetric3::from(at(&self.normal, lane)));
         let is_clear = factor.exceeds(clear_pivot(self.weight.0[lane]));
         if is_clear && self.surplus.0[lane] >= POSITION_STATES {
             RangeNormal::Solved(factor)

@@ -341,15 +341,7 @@ impl NormalLanes<f64> {
         let floors = 1.0 + (instants - 1) as f64 / 32.0;
         let mut lanes = Lanes([f64::INFINITY; LANES]);
         for l in 0..LANES {
-            let [xx, yy, zz, xy, xz, yz] = self.at(l);
-            let factor = Factor::new(&Symmetric3 {
-                xx,
-                yy,
-                zz,
-                xy,
-                xz,
-                yz,
-            });
+            let factor = Factor::new(&Symmetric3::from(self.at(l)));
             let weight = f64::from(self.surplus.0[l].saturating_add(clocks));
             let clear = factor.exceeds(floors * clear_pivot(weight));
             let pdop = factor.trace_of_inverse().root();

@@ -189,16 +189,8 @@ impl<'a> Settling<'a> {
 /// Normal matrix of the GNSS at a point of a tile, and Σ v and the number of satellites that share
 /// their clock with the design. The elimination of that clock is undone, since the design shares it.
 fn gnss_part(fixed: &FixedTile<'_>, lane: usize) -> (Symmetric3, Vector3<f64>, u32) {
-    let [xx, yy, zz, xy, xz, yz] =
-        std::array::from_fn(|element| fixed.normal::<f64>(element, lane));
-    let mut normal = Symmetric3 {
-        xx,
-        yy,
-        zz,
-        xy,
-        xz,
-        yz,
-    };
+    let elements = std::array::from_fn(|element| fixed.normal::<f64>(element, lane));
+    let mut normal = Symmetric3::from(elements);
     let Some(shared) = fixed.shared else {
         return (normal, Vector3::zeros(), 0);
     };
